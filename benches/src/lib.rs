@@ -1,0 +1,1 @@
+//! Benches of the workspace live in `benches/benches`.

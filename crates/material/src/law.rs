@@ -1,0 +1,136 @@
+//! The interface between a law and whoever drives it (an element, the point driver, a test).
+//!
+//! A law works in its own *material frame*: the caller rotates the displacement gradient into the frame whose first
+//! axis is the fibre (`H_f = R^T H R`, `R` = columns e1 e2 e3) and rotates what comes back. Symmetric tensors are
+//! Mandel vectors in the order 11, 22, 33, 12, 13, 23 with the shear entries multiplied by sqrt(2), so that
+//! `a : b` is the dot product of the vectors and a fourth-order tensor is a plain 6x6 matrix.
+
+use nalgebra::{Matrix3, Matrix6, Vector6};
+
+use crate::LawError;
+
+/// What a law is asked at one integration point. Everything is in the material frame.
+#[derive(Clone, Debug)]
+pub struct PointInput {
+    /// Displacement gradient `H = F - 1` \[-\], reference configuration. `H` and not `F`, so that a strain of 1e-14 survives.
+    pub displacement_gradient: Matrix3<f64>,
+    /// Takes the place of the fibre elongation `I_elong` \[-\] in the axial energy `W_A` (mean-elongation brick);
+    /// `None`: the point's own elongation.
+    pub mean_elongation: Option<f64>,
+    /// Length of the time increment \[s\].
+    pub time_increment: f64,
+    /// Temperature \[K\].
+    pub temperature: f64,
+}
+
+/// How much of the answer is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Stress, energies and the new state.
+    Stress,
+    /// The same and the consistent tangent.
+    Tangent,
+}
+
+/// The share of the response that is conjugate to a prescribed mean elongation `e` (see [`PointInput::mean_elongation`]).
+///
+/// With `W(C, e)` the axial energy written in the independent elongation `e`, the total differential of the response is
+/// `dS = tangent dE + stress_by_elongation de` and `d(fibre_stress) = fibre_stress_by_strain . dE + fibre_stiffness de`.
+/// The two vectors are equal when the law's tangent is symmetric.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FibreResponse {
+    /// `dW/de` \[MPa\], the fibre's Kirchhoff stress.
+    pub fibre_stress: f64,
+    /// `d2W/de2` \[MPa\].
+    pub fibre_stiffness: f64,
+    /// `dS/de` \[MPa\], Mandel.
+    pub stress_by_elongation: Vector6<f64>,
+    /// `d(dW/de)/dE` \[MPa\], Mandel.
+    pub fibre_stress_by_strain: Vector6<f64>,
+}
+
+/// What a law answers. The caller owns it and passes it again, so a kernel allocates nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// Second Piola-Kirchhoff stress `S` \[MPa\], Mandel, material frame. With a mean elongation: without the part
+    /// `fibre_stress * 2 dI_elong/dC`, which the element adds with its own average.
+    pub second_piola: Vector6<f64>,
+    /// Consistent tangent `dS/dE = 2 dS/dC` of the discrete update \[MPa\], Mandel. Written when asked for.
+    pub tangent: Matrix6<f64>,
+    /// Written when a mean elongation is given.
+    pub fibre: FibreResponse,
+    /// Stored energy after the increment \[mJ/mm^3\]: elastic potential and back-stress energy.
+    pub stored_energy: f64,
+    /// Incremental potential \[mJ/mm^3\] whose derivative by `E` is `S` (stored energy plus what slip costs in this increment
+    /// at the integrated yield stress); `None` where there is none (pressure-dependent friction).
+    pub incremental_potential: Option<f64>,
+    /// Dissipated in this increment by transverse and by longitudinal sliding \[mJ/mm^3\], mid-point value: for the energy
+    /// balance. The end value accumulates in the state.
+    pub dissipated_mid: [f64; 2],
+}
+
+/// What a state variable means, so that output needs no knowledge of the law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StateKind {
+    /// Plastic part of the two transverse distortions `I_dist^P` \[-\].
+    DistortionPlastic,
+    /// Plastic part of the two longitudinal shears `I_sh^P` \[-\].
+    LongitudinalShearPlastic,
+    /// Accumulated transverse sliding `kappa_t` \[-\].
+    TransverseSliding,
+    /// Accumulated longitudinal sliding `kappa_l` \[-\].
+    LongitudinalSliding,
+    /// Energy dissipated by transverse sliding `d_t` \[mJ/mm^3\].
+    TransverseDissipation,
+    /// Energy dissipated by longitudinal sliding `d_l` \[mJ/mm^3\].
+    LongitudinalDissipation,
+    /// Compaction pressure of the last increment `p` \[MPa\].
+    CompactionPressure,
+}
+
+/// One entry of a law's state: `components` consecutive numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateVariable {
+    /// Meaning.
+    pub kind: StateKind,
+    /// Index of its first number in the state of a point.
+    pub offset: usize,
+    /// How many numbers.
+    pub components: usize,
+}
+
+/// A constitutive law: pure, re-entrant, without memory of its own.
+pub trait Law: Send + Sync + std::fmt::Debug {
+    /// Short name, as in a scene file.
+    fn name(&self) -> &'static str;
+
+    /// Layout of a point's state; empty for an elastic law, which then costs no memory.
+    fn state_variables(&self) -> &[StateVariable];
+
+    /// Numbers in a point's state.
+    fn state_len(&self) -> usize {
+        self.state_variables().iter().map(|v| v.components).sum()
+    }
+
+    /// Whether the tangent is symmetric for every input.
+    fn is_symmetric(&self) -> bool;
+
+    /// Whether the update derives from an incremental potential ([`Response::incremental_potential`] is always `Some`).
+    fn has_potential(&self) -> bool;
+
+    /// Whether [`PointInput::mean_elongation`] is understood: the law has a fibre term written apart.
+    fn has_fibre_term(&self) -> bool;
+
+    /// Answers at one point. `old` is read, `new` is written (both of length [`Law::state_len`]); calling twice gives the same.
+    ///
+    /// # Errors
+    /// [`LawError`] on `J <= 0`, on a non-finite input or result and past a lock-up. `new` and `out` are then unspecified.
+    fn evaluate(
+        &self,
+        input: &PointInput,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut Response,
+    ) -> Result<(), LawError>;
+}

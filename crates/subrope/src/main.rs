@@ -1,0 +1,2 @@
+//! The `subrope` command.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Whole-scene tests live in `tests/tests`.
