@@ -1,1 +1,35 @@
-//! (under construction)
+//! Geometry of ropes for finite elements.
+//!
+//! - [`mesh`]: hexahedral meshes with named sets and surfaces;
+//! - [`hexahedron`], [`quadrilateral`]: isoparametric maps of cells and faces;
+//! - [`helix`]: lay, helices, Frenet frames, yarns in strands with a helical axis;
+//! - [`fibre`]: fields of fibre frames;
+//! - [`section`], [`strand`]: meshes of sections and strands;
+//! - [`quality`]: Jacobian, shape, volume and fibre angles of a mesh.
+//!
+//! Lengths are in mm, angles in radians, everything is in the reference configuration.
+
+pub mod axis;
+mod check;
+pub mod error;
+pub mod fibre;
+pub mod helix;
+pub mod hexahedron;
+pub mod mesh;
+pub mod quadrilateral;
+pub mod quality;
+pub mod section;
+pub mod strand;
+
+pub use axis::{Axis, Cylindrical};
+pub use error::{GeometryError, Parameter};
+pub use fibre::{
+    FibreField, FibresAlongHelix, HelicalFibres, Parallel, PerCellFrames, centroid_frames, fibre_frames,
+    frame_from_directions,
+};
+pub use helix::{FrenetFrame, Handedness, Helix, Lay, Yarn, touching_radius, touching_radius_at_angle};
+pub use hexahedron::{Hex8, Hex27, Hexahedron, MappedPoint, QuadraturePoint, map_point};
+pub use mesh::{CellKind, Face, Mesh, exterior_faces};
+pub use quadrilateral::{FacePoint, Quad4, Quad9, Quadrilateral, surface_area};
+pub use section::{Section, SectionArea, SectionMesh};
+pub use strand::{MeshLines, Strand, StrandAxis, StrandEnds, StrandFibres, StrandOrigin};
