@@ -1,0 +1,314 @@
+//! A model and its state over steps and increments.
+
+use nalgebra::Vector3;
+
+use super::newton::Attempt;
+use super::record::{Control, IncrementRecord, Observer, Phase, Phases, Totals};
+use super::rigid::rigid_motions;
+use super::step::{Increments, NewtonOptions, Step};
+use super::workspace::Workspace;
+use crate::FemError;
+use crate::assembly::System;
+use crate::contribution::Contribution;
+use crate::kinematics::Kinematics;
+use crate::linear::SolverOptions;
+
+/// Nodes and what acts on them.
+pub struct Model {
+    /// Nodes, reference points, ties.
+    pub kinematics: Kinematics,
+    /// Everything that adds forces.
+    pub contributions: Vec<Box<dyn Contribution>>,
+}
+
+/// A model with its committed state; runs steps.
+pub struct Analysis {
+    pub(super) model: Model,
+    pub(super) options: NewtonOptions,
+    pub(super) solver_options: SolverOptions,
+    pub(super) threads: usize,
+    pub(super) system: Option<System>,
+    pub(super) prescribed: Vec<bool>,
+    /// Committed coordinates.
+    pub(super) q: Vec<f64>,
+    /// Coordinates at the start of the step.
+    pub(super) step_start: Vec<f64>,
+    /// Change of the coordinates over the last increment and its length.
+    pub(super) last_change: Vec<f64>,
+    pub(super) last_length: f64,
+    /// Committed nodal displacements.
+    pub(super) displacement: Vec<f64>,
+    /// Generalised reactions at the committed state.
+    pub(super) reaction: Vec<f64>,
+    /// Dead loads at the committed state.
+    pub(super) nodal_load: Vec<f64>,
+    pub(super) coordinate_load: Vec<f64>,
+    /// Internal nodal forces at the committed state.
+    pub(super) internal: Vec<f64>,
+    pub(super) totals: Totals,
+    pub(super) phases: Phases,
+    pub(super) time: f64,
+    pub(super) steps_done: usize,
+    pub(super) work: Workspace,
+    /// Scale that turns moments into forces \[mm\].
+    pub(super) lever: f64,
+}
+
+impl Analysis {
+    /// A model at rest.
+    #[must_use]
+    pub fn new(model: Model, options: NewtonOptions, solver_options: SolverOptions, threads: usize) -> Self {
+        let (coordinates, nodes) = (model.kinematics.coordinate_count(), model.kinematics.node_count());
+        Self {
+            lever: lever(&model.kinematics),
+            model,
+            options,
+            solver_options,
+            threads,
+            system: None,
+            prescribed: Vec::new(),
+            q: vec![0.0; coordinates],
+            step_start: vec![0.0; coordinates],
+            last_change: vec![0.0; coordinates],
+            last_length: 0.0,
+            displacement: vec![0.0; 3 * nodes],
+            reaction: vec![0.0; coordinates],
+            nodal_load: vec![0.0; 3 * nodes],
+            coordinate_load: vec![0.0; coordinates],
+            internal: vec![0.0; 3 * nodes],
+            totals: Totals::default(),
+            phases: Phases::default(),
+            time: 0.0,
+            steps_done: 0,
+            work: Workspace::default(),
+        }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Committed coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// Committed nodal displacements \[mm\], three per node.
+    #[must_use]
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Internal nodal forces less dead loads \[N\], three per node: zero at free nodes, reactions elsewhere.
+    #[must_use]
+    pub fn nodal_reactions(&self) -> Vec<f64> {
+        self.internal.iter().zip(&self.nodal_load).map(|(i, e)| i - e).collect()
+    }
+
+    /// Whether a coordinate is prescribed in the current step.
+    #[must_use]
+    pub fn is_prescribed(&self, coordinate: usize) -> bool {
+        self.prescribed.get(coordinate).copied().unwrap_or(false)
+    }
+
+    /// Threads.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Generalised reactions of all coordinates.
+    #[must_use]
+    pub fn reactions(&self) -> &[f64] {
+        &self.reaction
+    }
+
+    /// Force \[N\] and moment about its current position \[N mm\] that act on a reference point from outside
+    /// through prescribed motions.
+    #[must_use]
+    pub fn point_reaction(&self, point: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let (force, moment) = self.model.kinematics.section_resultant(point, &self.q, &self.nodal_reactions());
+        let first = self.model.kinematics.points()[point].first as usize;
+        (force - Vector3::from_column_slice(&self.coordinate_load[first..first + 3]), moment)
+    }
+
+    /// Energies and counts.
+    #[must_use]
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Time per phase.
+    #[must_use]
+    pub fn phases(&self) -> &Phases {
+        &self.phases
+    }
+
+    /// Time reached \[s\].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The sparse system of the current step.
+    #[must_use]
+    pub fn system(&self) -> Option<&System> {
+        self.system.as_ref()
+    }
+
+    /// Runs one step. On an error the state is that of the last committed increment.
+    ///
+    /// # Errors
+    /// [`FemError`]; what an observer answers.
+    pub fn run_step(&mut self, step: &Step, observer: &mut (dyn Observer + Send)) -> Result<(), FemError> {
+        crate::parallel::with_threads(self.threads, || self.run_step_here(step, observer))?
+    }
+
+    fn run_step_here(&mut self, step: &Step, observer: &mut dyn Observer) -> Result<(), FemError> {
+        self.prepare(step)?;
+        // A new step turns elsewhere: nothing to continue.
+        self.last_length = 0.0;
+        self.step_start.copy_from_slice(&self.q);
+        let mut division = Division::new(step.increments);
+        let mut attempt = 1;
+        while division.done < 1.0 {
+            division.check_count(step)?;
+            let to = division.next_end();
+            let mut record = self.record(step, &division, to, attempt);
+            match self.attempt(step, Attempt { from: division.done, to }, &mut record) {
+                Ok(()) => {
+                    self.time += step.duration * (to - division.done);
+                    division.advance(to, record.iterations, &self.options);
+                    attempt = 1;
+                    if observer.converged(self, &record)? == Control::Stop {
+                        return Err(FemError::Interrupted);
+                    }
+                }
+                Err(cause) => {
+                    self.totals.cutbacks += 1;
+                    observer.failed(&record, &cause);
+                    division.cut(step, cause, &self.options)?;
+                    attempt += 1;
+                }
+            }
+        }
+        self.steps_done += 1;
+        Ok(())
+    }
+
+    fn record(&self, step: &Step, division: &Division, to: f64, attempt: usize) -> IncrementRecord {
+        IncrementRecord {
+            step: step.name.clone(),
+            step_index: self.steps_done + 1,
+            increment: division.count + 1,
+            attempt,
+            fraction: to,
+            length: to - division.done,
+            time: self.time + step.duration * (to - division.done),
+            iterations: 0,
+            residuals: Vec::new(),
+            negative_pivots: None,
+        }
+    }
+
+    /// Makes the system of a step unless the last one serves.
+    fn prepare(&mut self, step: &Step) -> Result<(), FemError> {
+        let mut prescribed = vec![false; self.q.len()];
+        for p in &step.prescriptions {
+            prescribed[p.coordinate as usize] = true;
+        }
+        if self.system.is_some() && prescribed == self.prescribed {
+            return Ok(());
+        }
+        let motions = rigid_motions(&self.model.kinematics, &self.model.contributions, &prescribed);
+        if !motions.is_empty() {
+            return Err(FemError::RigidModes { count: motions.len(), motions: motions.join(", ") });
+        }
+        self.system = None;
+        let (model, options) = (&self.model, &self.solver_options);
+        let system = self.phases.measure(Phase::Analysis, || {
+            System::new(&model.kinematics, &model.contributions, &prescribed, options)
+        })?;
+        self.work = Workspace::new(self.q.len(), self.model.kinematics.node_count(), system.equations().len());
+        self.system = Some(system);
+        self.prescribed = prescribed;
+        Ok(())
+    }
+}
+
+/// Largest distance of a tied node from its reference point; one when nothing is tied.
+fn lever(kinematics: &Kinematics) -> f64 {
+    let x = kinematics.positions();
+    let arms = kinematics.points().iter().flat_map(|p| p.nodes.iter().map(|&n| (x[n as usize] - p.position).norm()));
+    let largest = arms.fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// How far a step is and how long the next increment shall be.
+struct Division {
+    done: f64,
+    length: f64,
+    count: usize,
+    kind: Increments,
+}
+
+impl Division {
+    fn new(kind: Increments) -> Self {
+        let length = match kind {
+            Increments::Fixed(n) => 1.0 / n as f64,
+            Increments::Automatic { initial, .. } => initial,
+        };
+        Self { done: 0.0, length, count: 0, kind }
+    }
+
+    fn next_end(&self) -> f64 {
+        match self.kind {
+            Increments::Fixed(n) => (self.count + 1) as f64 / n as f64,
+            // No crumb at the end of a step.
+            Increments::Automatic { .. } if self.done + 1.001 * self.length >= 1.0 => 1.0,
+            Increments::Automatic { .. } => self.done + self.length,
+        }
+    }
+
+    fn advance(&mut self, to: f64, iterations: usize, options: &NewtonOptions) {
+        self.done = to;
+        self.count += 1;
+        if let Increments::Automatic { maximum, .. } = self.kind
+            && iterations <= options.easy_iterations
+        {
+            self.length = (self.length * options.growth).min(maximum);
+        }
+    }
+
+    fn cut(&mut self, step: &Step, cause: FemError, options: &NewtonOptions) -> Result<(), FemError> {
+        if !cause.is_recoverable() {
+            return Err(cause);
+        }
+        let cause = Box::new(cause);
+        match self.kind {
+            Increments::Fixed(_) => {
+                Err(FemError::FixedIncrementFailed { step: step.name.clone(), increment: self.count + 1, cause })
+            }
+            Increments::Automatic { minimum, .. } => {
+                self.length = (self.next_end() - self.done) * options.cutback;
+                if self.length < minimum {
+                    let (step, fraction) = (step.name.clone(), self.done);
+                    return Err(FemError::IncrementTooShort { step, fraction, minimum, cause });
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn check_count(&self, step: &Step) -> Result<(), FemError> {
+        match self.kind {
+            Increments::Automatic { max_count, .. } if self.count >= max_count => {
+                Err(FemError::TooManyIncrements { step: step.name.clone(), fraction: self.done, limit: max_count })
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Steps, increments and Newton iterations.
+
+mod driver;
+mod line_search;
+mod newton;
+mod record;
+mod rigid;
+mod step;
+mod viscous;
+mod workspace;
+
+pub use driver::{Analysis, Model};
+pub use record::{Control, IncrementRecord, Observer, Phase, Phases, Silent, Totals};
+pub use rigid::rigid_motions;
+pub use step::{Increments, Load, NewtonOptions, Path, Prescription, Step, StepLoad};
+pub use viscous::Viscous;

@@ -1,0 +1,275 @@
+//! One attempt at an increment: Newton-Raphson from the committed state.
+
+use super::driver::Analysis;
+use super::record::{IncrementRecord, Phase};
+use super::step::{Prescription, Step};
+use super::workspace::{Iterate, Workspace};
+use crate::FemError;
+use crate::assembly::{Evaluation, Jump};
+use crate::contribution::{Configuration, Request};
+
+/// Fractions of the step between which an attempt goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Attempt {
+    pub from: f64,
+    pub to: f64,
+}
+
+/// The scale of rounding in the residual, over the norm of all element forces.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Part of the norm of the element forces below which reactions do not count as a reference.
+const SMALL_REACTION: f64 = 1e-6;
+
+impl Analysis {
+    /// Solves for the state at the end of an attempt and commits it. On an error nothing has changed.
+    pub(super) fn attempt(
+        &mut self,
+        step: &Step,
+        attempt: Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        let mut work = std::mem::take(&mut self.work);
+        work.target.fill(step, attempt, &self.step_start);
+        let outcome = self.iterate(&mut work, attempt, record);
+        self.totals.iterations += record.iterations;
+        if outcome.is_ok() {
+            self.commit(&mut work, attempt);
+        }
+        self.work = work;
+        outcome
+    }
+
+    fn iterate(
+        &mut self,
+        work: &mut Workspace,
+        attempt: Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        self.first_iterate(work, attempt, record)?;
+        let mut largest_energy = 0.0_f64;
+        let mut energy = 0.0;
+        loop {
+            let tolerance = self.options.force_tolerance;
+            let relative = relative_residual(&work.base);
+            record.residuals.push(relative);
+            if relative <= tolerance && energy <= self.options.energy_tolerance * largest_energy {
+                return Ok(());
+            }
+            if record.iterations >= self.options.max_iterations || hopeless(&record.residuals) {
+                let iterations = record.iterations;
+                return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
+            }
+            record.negative_pivots = self.correct(work)?;
+            record.iterations += 1;
+            let slope = self.slope(work);
+            largest_energy = largest_energy.max(slope.abs());
+            self.advance(work, slope)?;
+            // Energy of this correction in the new residual.
+            energy = self.slope(work).abs();
+        }
+    }
+
+    /// Continues the last increment, or goes along the committed tangent.
+    fn first_iterate(
+        &mut self,
+        work: &mut Workspace,
+        attempt: Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        if self.options.extrapolate && self.last_length > 0.0 {
+            let ratio = (attempt.to - attempt.from) / self.last_length;
+            for ((q, committed), change) in work.base.q.iter_mut().zip(&self.q).zip(&self.last_change) {
+                *q = committed + ratio * change;
+            }
+            work.target.impose(&mut work.base.q);
+            if self.evaluate(&mut work.base, &work.target, None, Request::Tangent).is_ok() {
+                return Ok(());
+            }
+        }
+        self.predict(work, record)
+    }
+
+    /// One linear step from the committed state with the motion of the prescribed coordinates linearised, so that
+    /// the elements next to a moving section are not turned inside out.
+    fn predict(&mut self, work: &mut Workspace, record: &mut IncrementRecord) -> Result<(), FemError> {
+        work.trial.q.copy_from_slice(&self.q);
+        work.target.impose(&mut work.trial.q);
+        self.model.kinematics.displacements(&work.trial.q, &mut work.jump);
+        for (jump, committed) in work.jump.iter_mut().zip(&self.displacement) {
+            *jump -= committed;
+        }
+        work.base.q.copy_from_slice(&self.q);
+        let jump = Jump { displacement: &work.jump };
+        self.evaluate(&mut work.base, &work.target, Some(jump), Request::Tangent)?;
+        self.correct(work)?;
+        record.iterations += 1;
+        work.base.q.copy_from_slice(&work.trial.q);
+        self.equations()?.scatter_add(1.0, &work.correction, &mut work.base.q);
+        self.evaluate(&mut work.base, &work.target, None, Request::Tangent)
+    }
+
+    /// Factorises at the base and solves for the correction.
+    fn correct(&mut self, work: &mut Workspace) -> Result<Option<usize>, FemError> {
+        self.totals.factorisations += 1;
+        let Some(system) = self.system.as_mut() else { return Ok(None) };
+        let pivots = self.phases.measure(Phase::Factorisation, || system.factorise())?;
+        system.equations().gather(&work.base.residual, &mut work.rhs);
+        work.rhs.iter_mut().for_each(|v| *v = -*v);
+        let (rhs, x) = (&work.rhs, &mut work.correction);
+        self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
+        Ok(pivots)
+    }
+
+    pub(super) fn equations(&self) -> Result<&crate::Equations, FemError> {
+        self.system.as_ref().map(crate::System::equations).ok_or(FemError::NonFiniteResidual)
+    }
+
+    /// `r . correction` at the base: the slope of the potential along the correction.
+    pub(super) fn slope(&self, work: &Workspace) -> f64 {
+        self.slope_of(&work.base, &work.correction)
+    }
+
+    pub(super) fn slope_of(&self, iterate: &Iterate, correction: &[f64]) -> f64 {
+        let Some(system) = &self.system else { return 0.0 };
+        let coordinates = system.equations().coordinates();
+        coordinates.iter().zip(correction).map(|(&c, d)| iterate.residual[c as usize] * d).sum()
+    }
+
+    /// Evaluates residual, energies and norms at `iterate.q`, and the tangent if asked.
+    pub(super) fn evaluate(
+        &mut self,
+        iterate: &mut Iterate,
+        target: &super::workspace::Target,
+        jump: Option<Jump<'_>>,
+        request: Request,
+    ) -> Result<(), FemError> {
+        let kinematics = &self.model.kinematics;
+        kinematics.displacements(&iterate.q, &mut iterate.displacement);
+        let at = Evaluation {
+            q: &iterate.q,
+            configuration: Configuration {
+                displacement: &iterate.displacement,
+                committed: &self.displacement,
+                time_increment: target.time_increment,
+                temperature: self.options.temperature,
+                parallel: self.threads > 1,
+            },
+            external: &target.nodal,
+            jump,
+            request,
+        };
+        let Some(system) = self.system.as_mut() else { return Ok(()) };
+        let contributions = &mut self.model.contributions;
+        let residual = &mut iterate.residual;
+        let assembled =
+            self.phases.measure(Phase::Assembly, || system.assemble(kinematics, contributions, &at, residual))?;
+        let work: f64 = target.nodal.iter().zip(&iterate.displacement).map(|(f, u)| f * u).sum();
+        let point_work: f64 = target.coordinates.iter().zip(&iterate.q).map(|(f, q)| f * q).sum();
+        iterate.residual.iter_mut().zip(&target.coordinates).for_each(|(r, f)| *r -= f);
+        iterate.energies = assembled.energies;
+        iterate.potential = assembled.energies.potential - work - point_work;
+        self.measure(iterate, target, assembled.force_scale);
+        Ok(())
+    }
+
+    /// Norms of the residual and of what it is compared with; moments count over the lever.
+    fn measure(&self, iterate: &mut Iterate, target: &super::workspace::Target, scale: f64) {
+        let (mut free, mut held) = (0.0, 0.0);
+        for (c, r) in iterate.residual.iter().enumerate() {
+            let lever = if self.is_rotation(c) { self.lever } else { 1.0 };
+            let value = (r / lever) * (r / lever);
+            if self.prescribed[c] { held += value } else { free += value }
+        }
+        let loads = target.nodal.iter().chain(&target.coordinates).map(|f| f * f).sum::<f64>();
+        iterate.norm = free.sqrt();
+        iterate.reference = held.sqrt().max(loads.sqrt()).max(SMALL_REACTION * scale);
+        if iterate.norm <= ROUNDING * scale {
+            iterate.norm = 0.0;
+        }
+    }
+
+    fn is_rotation(&self, coordinate: usize) -> bool {
+        self.model.kinematics.is_rotation(coordinate)
+    }
+
+    /// The trial becomes the committed state; the work of the increment by the trapezoidal rule.
+    fn commit(&mut self, work: &mut Workspace, attempt: Attempt) {
+        let (new, target) = (&work.base, &work.target);
+        let mut external = 0.0;
+        for c in 0..self.q.len() {
+            let change = new.q[c] - self.q[c];
+            let load = 0.5 * (self.coordinate_load[c] + target.coordinates[c]);
+            external += (load + if self.prescribed[c] { 0.5 * (self.reaction[c] + new.residual[c]) } else { 0.0 }) * change;
+            self.last_change[c] = change;
+        }
+        for i in 0..self.displacement.len() {
+            let load = 0.5 * (self.nodal_load[i] + target.nodal[i]);
+            external += load * (new.displacement[i] - self.displacement[i]);
+        }
+        self.totals.external_work += external;
+        self.totals.stored = new.energies.stored;
+        self.totals.stabilising += new.energies.stabilising;
+        for mode in 0..2 {
+            self.totals.dissipated_mid[mode] += new.energies.dissipated_mid[mode];
+        }
+        self.totals.increments += 1;
+        self.last_length = attempt.to - attempt.from;
+        self.q.copy_from_slice(&new.q);
+        self.displacement.copy_from_slice(&new.displacement);
+        self.reaction.copy_from_slice(&new.residual);
+        self.nodal_load.copy_from_slice(&target.nodal);
+        self.coordinate_load.copy_from_slice(&target.coordinates);
+        if let Some(system) = &self.system {
+            self.internal.copy_from_slice(system.nodal_forces());
+        }
+        self.totals.dissipated = [0.0; 2];
+        for contribution in &mut self.model.contributions {
+            contribution.commit();
+            let [transverse, longitudinal] = contribution.dissipated();
+            self.totals.dissipated[0] += transverse;
+            self.totals.dissipated[1] += longitudinal;
+        }
+    }
+}
+
+fn relative_residual(iterate: &Iterate) -> f64 {
+    if iterate.norm == 0.0 { 0.0 } else { iterate.norm / iterate.reference }
+}
+
+/// Whether the residual has grown for so long that more iterations are wasted.
+fn hopeless(residuals: &[f64]) -> bool {
+    let n = residuals.len();
+    let best = residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    n > 6 && residuals[n - 3..].iter().all(|&r| r > 1e4 * best) || residuals.last().is_some_and(|r| *r > 1e12)
+}
+
+impl super::workspace::Target {
+    /// Loads and prescribed values at the end of an attempt.
+    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64]) {
+        self.prescribed.clear();
+        let value = |p: &Prescription| (p.coordinate, (p.path)(attempt.to, start[p.coordinate as usize]));
+        self.prescribed.extend(step.prescriptions.iter().map(value));
+        self.nodal.fill(0.0);
+        self.coordinates.fill(0.0);
+        for load in &step.loads {
+            let factor = (load.path)(attempt.to, 0.0);
+            for (node, force) in &load.load.nodal {
+                for k in 0..3 {
+                    self.nodal[3 * *node as usize + k] += factor * force[k];
+                }
+            }
+            for (c, force) in &load.load.coordinates {
+                self.coordinates[*c as usize] += factor * force;
+            }
+        }
+        self.time_increment = step.duration * (attempt.to - attempt.from);
+    }
+
+    /// Sets the prescribed coordinates.
+    fn impose(&self, q: &mut [f64]) {
+        for &(c, value) in &self.prescribed {
+            q[c as usize] = value;
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What a run tells while it goes on.
+
+use std::time::{Duration, Instant};
+
+use super::Analysis;
+use crate::FemError;
+
+/// Parts of a run whose time is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Pattern, scatter maps, ordering, symbolic factorisation.
+    Analysis,
+    /// Laws, elements and assembly.
+    Assembly,
+    /// Numeric factorisation.
+    Factorisation,
+    /// Triangular solves and refinement.
+    Solution,
+}
+
+/// Time per phase.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Phases {
+    /// By [`Phase`], in its order.
+    pub times: [Duration; 4],
+}
+
+impl Phases {
+    /// Runs `work` and adds its time to a phase.
+    pub fn measure<T>(&mut self, phase: Phase, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let out = work();
+        self.times[phase as usize] += start.elapsed();
+        out
+    }
+}
+
+/// Energies since the start \[mJ\] and counts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Totals {
+    /// Work of reactions and loads, trapezoidal rule.
+    pub external_work: f64,
+    /// Stored now.
+    pub stored: f64,
+    /// Dissipated by transverse and longitudinal sliding, end values (as in the fields).
+    pub dissipated: [f64; 2],
+    /// The same, mid-point values (second order in the increment: the energy balance).
+    pub dissipated_mid: [f64; 2],
+    /// Spent by viscous stabilisation.
+    pub stabilising: f64,
+    /// Converged increments.
+    pub increments: usize,
+    /// Newton iterations, those of failed attempts included.
+    pub iterations: usize,
+    /// Failed attempts.
+    pub cutbacks: usize,
+    /// Factorisations.
+    pub factorisations: usize,
+}
+
+impl Totals {
+    /// `external work - stored - dissipated - stabilising` over the external work, with mid-point dissipation.
+    #[must_use]
+    pub fn energy_error(&self) -> f64 {
+        let balance =
+            self.external_work - self.stored - self.dissipated_mid.iter().sum::<f64>() - self.stabilising;
+        if self.external_work == 0.0 { balance } else { balance / self.external_work.abs() }
+    }
+}
+
+/// One attempt at an increment.
+#[derive(Clone, Debug)]
+pub struct IncrementRecord {
+    /// Name of the step.
+    pub step: String,
+    /// Index of the step, from 1.
+    pub step_index: usize,
+    /// Number of the increment in the step, from 1.
+    pub increment: usize,
+    /// Attempt at this increment, from 1.
+    pub attempt: usize,
+    /// Fraction of the step at its end.
+    pub fraction: f64,
+    /// Length as a fraction of the step.
+    pub length: f64,
+    /// Time at its end \[s\].
+    pub time: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Relative residual at every iterate.
+    pub residuals: Vec<f64>,
+    /// Negative pivots of the last tangent: more than zero past a limit or bifurcation point.
+    pub negative_pivots: Option<usize>,
+}
+
+impl IncrementRecord {
+    /// Last relative residual.
+    #[must_use]
+    pub fn residual(&self) -> f64 {
+        self.residuals.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// Whether to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Next increment.
+    Continue,
+    /// Stop here: the committed state is kept.
+    Stop,
+}
+
+/// Watches a run.
+pub trait Observer {
+    /// An increment has converged and is committed.
+    ///
+    /// # Errors
+    /// What stops the run, such as results that cannot be written ([`FemError::Observer`]).
+    fn converged(&mut self, analysis: &Analysis, record: &IncrementRecord) -> Result<Control, FemError>;
+
+    /// An attempt has failed; the run goes on with a shorter increment.
+    fn failed(&mut self, record: &IncrementRecord, cause: &FemError) {
+        let _ = (record, cause);
+    }
+}
+
+/// Watches nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn converged(&mut self, _: &Analysis, _: &IncrementRecord) -> Result<Control, FemError> {
+        Ok(Control::Continue)
+    }
+}

@@ -1,0 +1,107 @@
+//! What a step asks for.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+/// A value as a function of the fraction of a step, 0 to 1, and of the value reached before the step.
+pub type Path = Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>;
+
+/// The motion of one coordinate.
+#[derive(Clone)]
+pub struct Prescription {
+    /// Coordinate.
+    pub coordinate: u32,
+    /// Its value \[mm or rad\] over the step.
+    pub path: Path,
+}
+
+/// A dead load at factor one.
+#[derive(Clone, Debug, Default)]
+pub struct Load {
+    /// Forces on nodes \[N\].
+    pub nodal: Vec<(u32, Vector3<f64>)>,
+    /// Forces on coordinates \[N\], such as the displacement of a reference point.
+    pub coordinates: Vec<(u32, f64)>,
+}
+
+/// A load and its factor.
+#[derive(Clone)]
+pub struct StepLoad {
+    /// The load at factor one.
+    pub load: Load,
+    /// Its factor over the step.
+    pub path: Path,
+}
+
+/// How a step is divided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Increments {
+    /// So many equal increments, neither grown nor cut.
+    Fixed(usize),
+    /// Cut on failure, grown when convergence is easy. All lengths as fractions of the step.
+    Automatic {
+        /// First increment.
+        initial: f64,
+        /// Below this the step is given up.
+        minimum: f64,
+        /// Longest increment.
+        maximum: f64,
+        /// Most converged increments.
+        max_count: usize,
+    },
+}
+
+/// One step: motions and loads that change together.
+#[derive(Clone)]
+pub struct Step {
+    /// Name.
+    pub name: String,
+    /// Duration \[s\].
+    pub duration: f64,
+    /// Prescribed coordinates; all others are free.
+    pub prescriptions: Vec<Prescription>,
+    /// Loads; those of earlier steps that go on are named again.
+    pub loads: Vec<StepLoad>,
+    /// Division.
+    pub increments: Increments,
+}
+
+/// Settings of the Newton iteration and of the stepping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonOptions {
+    /// Largest residual over the norm of reactions and loads.
+    pub force_tolerance: f64,
+    /// Largest energy of a correction over the largest one of the increment.
+    pub energy_tolerance: f64,
+    /// Most iterations of an increment.
+    pub max_iterations: usize,
+    /// Whether corrections may be shortened.
+    pub line_search: bool,
+    /// Whether the first iterate continues the last increment.
+    pub extrapolate: bool,
+    /// Factor on the increment after easy convergence.
+    pub growth: f64,
+    /// Factor on the increment after a failure.
+    pub cutback: f64,
+    /// Up to so many iterations count as easy.
+    pub easy_iterations: usize,
+    /// Temperature \[K\].
+    pub temperature: f64,
+}
+
+impl Default for NewtonOptions {
+    fn default() -> Self {
+        Self {
+            force_tolerance: 1e-8,
+            energy_tolerance: 1e-9,
+            max_iterations: 25,
+            line_search: true,
+            extrapolate: true,
+            growth: 1.5,
+            cutback: 0.5,
+            easy_iterations: 6,
+            temperature: crate::REFERENCE_TEMPERATURE,
+        }
+    }
+}

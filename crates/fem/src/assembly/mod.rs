@@ -1,0 +1,8 @@
+//! From elements to a sparse system in the free coordinates.
+
+mod equations;
+mod scatter;
+mod system;
+
+pub use equations::Equations;
+pub use system::{Assembled, Evaluation, Jump, System};

@@ -1,0 +1,156 @@
+//! Errors of the kernel.
+
+use subrope_geometry::GeometryError;
+use subrope_material::LawError;
+
+use crate::linear::LinearError;
+
+/// What went wrong. [`FemError::is_recoverable`] tells whether a shorter increment may help.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum FemError {
+    /// A law gave no answer at an integration point.
+    #[error("element {element}, integration point {point}: {source}")]
+    Law {
+        /// Label of the element.
+        element: u64,
+        /// Integration point, from 0.
+        point: usize,
+        /// Cause.
+        source: LawError,
+    },
+    /// The volume of an element vanished or turned inside out, so that its mean does not exist.
+    #[error("element {element}: the mean volume ratio {ratio:e} is not positive: shorten the increment")]
+    MeanVolume {
+        /// Label of the element.
+        element: u64,
+        /// Mean of J over the element.
+        ratio: f64,
+    },
+    /// The residual holds a number that is not finite.
+    #[error("the residual is not finite: shorten the increment")]
+    NonFiniteResidual,
+    /// The linear solver gave up.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// The mesh does not carry finite elements.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// Newton did not converge within its iterations.
+    #[error("no convergence in {iterations} iterations (residual {residual:e}, wanted {tolerance:e})")]
+    NotConverged {
+        /// Iterations spent.
+        iterations: usize,
+        /// Relative residual reached.
+        residual: f64,
+        /// Relative residual wanted.
+        tolerance: f64,
+    },
+    /// The increments became too short.
+    #[error("step {step}, {fraction:.6} of it done: the increment fell below {minimum:e} of the step; last cause: {cause}")]
+    IncrementTooShort {
+        /// Name of the step.
+        step: String,
+        /// Converged part of the step.
+        fraction: f64,
+        /// Shortest increment allowed.
+        minimum: f64,
+        /// What failed last.
+        cause: Box<FemError>,
+    },
+    /// A fixed increment failed.
+    #[error("step {step}, fixed increment {increment} failed: {cause}; allow automatic increments or take more of them")]
+    FixedIncrementFailed {
+        /// Name of the step.
+        step: String,
+        /// Number of the increment in the step, from 1.
+        increment: usize,
+        /// Why.
+        cause: Box<FemError>,
+    },
+    /// More increments than allowed.
+    #[error("step {step} took the {limit} increments allowed and reached {fraction:.6} of it: raise max_count")]
+    TooManyIncrements {
+        /// Name of the step.
+        step: String,
+        /// Converged part of the step.
+        fraction: f64,
+        /// Limit.
+        limit: usize,
+    },
+    /// A body can still move as a whole.
+    #[error("{count} rigid motion(s) are not held: {motions}; prescribe them at a reference point or on nodes")]
+    RigidModes {
+        /// How many.
+        count: usize,
+        /// What they are.
+        motions: String,
+    },
+    /// Two sections claim a node.
+    #[error("node {node} belongs to section {name} and to another section as well")]
+    NodeTiedTwice {
+        /// Index of the node.
+        node: usize,
+        /// Section that came second.
+        name: String,
+    },
+    /// A set refers to a node that does not exist.
+    #[error("{name}: there is no node with index {node}")]
+    UnknownNode {
+        /// Index of the node.
+        node: usize,
+        /// Where it is named.
+        name: String,
+    },
+    /// A section without nodes.
+    #[error("section {name} has no nodes")]
+    EmptySection {
+        /// Name.
+        name: String,
+    },
+    /// A single component of a node of a section was prescribed.
+    #[error("node {node} belongs to a section: prescribe the motion of its reference point instead")]
+    PrescribedTiedNode {
+        /// Index of the node.
+        node: usize,
+    },
+    /// An element with an averaged fibre elongation needs a law that has a fibre term.
+    #[error("law `{law}` has no separate fibre term, so its elongation cannot be averaged: choose another element")]
+    NoFibreTerm {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// The number of frames or cells does not fit the mesh.
+    #[error("{what}: {found} given, {expected} needed")]
+    Count {
+        /// What was counted.
+        what: &'static str,
+        /// Given.
+        found: usize,
+        /// Needed.
+        expected: usize,
+    },
+    /// The observer asked to stop.
+    #[error("interrupted after a converged increment")]
+    Interrupted,
+    /// The observer failed (results could not be written).
+    #[error("{0}")]
+    Observer(String),
+    /// The pool of threads could not be made.
+    #[error("could not start {threads} threads")]
+    Threads {
+        /// How many.
+        threads: usize,
+    },
+}
+
+impl FemError {
+    /// Whether a shorter increment from the committed state may succeed.
+    #[must_use]
+    pub fn is_recoverable(&self) -> bool {
+        match self {
+            Self::Law { source, .. } => !matches!(source, LawError::Parameter { .. } | LawError::NoFibreTerm),
+            Self::MeanVolume { .. } | Self::NonFiniteResidual | Self::Linear(_) | Self::NotConverged { .. } => true,
+            _ => false,
+        }
+    }
+}

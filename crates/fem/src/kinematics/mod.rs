@@ -1,0 +1,325 @@
+//! Nodes as functions of generalised coordinates.
+//!
+//! A free node owns three coordinates, its displacement. A reference point owns six, its displacement and its rotation
+//! vector, and carries the nodes of its section: rigidly, or with one coordinate more per node, its motion along a
+//! direction of the section (a radius). Every tie is the same mechanism: a position `x(q)`, its first derivative (which
+//! moves forces and stiffness from nodes to coordinates) and its second (a term of the tangent).
+
+mod map;
+mod rotation;
+
+pub use map::{ElementMap, Reduction, Tie};
+pub use rotation::Rotation;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::FemError;
+
+/// How the nodes of a section follow their reference point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SectionKind {
+    /// As a rigid body.
+    Rigid,
+    /// As a rigid body, but each node slides freely along its own radius.
+    Radial,
+}
+
+/// A point whose six coordinates (displacement \[mm\], rotation vector \[rad\]) move a section.
+#[derive(Clone, Debug)]
+pub struct ReferencePoint {
+    /// Name, as in the scene.
+    pub name: String,
+    /// Reference position \[mm\].
+    pub position: Vector3<f64>,
+    /// Nodes that follow it.
+    pub nodes: Vec<u32>,
+    /// Index of its first coordinate.
+    pub first: u32,
+}
+
+/// Which coordinates move a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NodeRule {
+    /// Its own displacement, three coordinates from `first`.
+    Free {
+        /// First of three coordinates.
+        first: u32,
+    },
+    /// Reference point `point`; with `slide`, also one coordinate along a direction that turns with the section.
+    Tied {
+        /// Index of the reference point.
+        point: u32,
+        /// Number of the tie among all ties.
+        tie: u32,
+        /// Coordinate and reference direction of the sliding motion.
+        slide: Option<(u32, Vector3<f64>)>,
+    },
+}
+
+/// All nodes and reference points of a model, and how the former follow from the coordinates `q`.
+#[derive(Clone, Debug)]
+pub struct Kinematics {
+    positions: Vec<Vector3<f64>>,
+    rules: Vec<NodeRule>,
+    points: Vec<ReferencePoint>,
+    coordinates: usize,
+}
+
+/// A section to tie, given to [`Kinematics::new`].
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Name of its reference point.
+    pub name: String,
+    /// Reference position of the point \[mm\].
+    pub position: Vector3<f64>,
+    /// Axis of the section (unit): radii are perpendicular to it. Not used by rigid sections.
+    pub axis: Vector3<f64>,
+    /// Nodes of the section.
+    pub nodes: Vec<u32>,
+    /// Rigid or free in radius.
+    pub kind: SectionKind,
+}
+
+impl Kinematics {
+    /// Numbers the coordinates: free nodes in node order, then per section the point and its sliding nodes.
+    ///
+    /// # Errors
+    /// [`FemError::NodeTiedTwice`], [`FemError::UnknownNode`], [`FemError::EmptySection`].
+    pub fn new(positions: Vec<Vector3<f64>>, sections: Vec<Section>) -> Result<Self, FemError> {
+        let mut owner: Vec<Option<u32>> = vec![None; positions.len()];
+        for (index, section) in sections.iter().enumerate() {
+            claim(&mut owner, index as u32, section)?;
+        }
+        let (mut next, mut ties) = (0_u32, 0_u32);
+        let mut rules: Vec<NodeRule> = owner
+            .iter()
+            .map(|o| match o {
+                None => {
+                    next += 3;
+                    NodeRule::Free { first: next - 3 }
+                }
+                Some(point) => {
+                    ties += 1;
+                    NodeRule::Tied { point: *point, tie: ties - 1, slide: None }
+                }
+            })
+            .collect();
+        let mut points = Vec::with_capacity(sections.len());
+        for section in sections {
+            let first = next;
+            next += 6;
+            if section.kind == SectionKind::Radial {
+                free_radii(&section, &positions, &mut rules, &mut next);
+            }
+            let Section { name, position, nodes, .. } = section;
+            points.push(ReferencePoint { name, position, nodes, first });
+        }
+        Ok(Self { positions, rules, points, coordinates: next as usize })
+    }
+
+    /// Number of coordinates.
+    #[must_use]
+    pub fn coordinate_count(&self) -> usize {
+        self.coordinates
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Reference positions of the nodes \[mm\].
+    #[must_use]
+    pub fn positions(&self) -> &[Vector3<f64>] {
+        &self.positions
+    }
+
+    /// How each node follows from the coordinates.
+    #[must_use]
+    pub fn rules(&self) -> &[NodeRule] {
+        &self.rules
+    }
+
+    /// The reference points.
+    #[must_use]
+    pub fn points(&self) -> &[ReferencePoint] {
+        &self.points
+    }
+
+    /// Index of a reference point by name.
+    #[must_use]
+    pub fn point_index(&self, name: &str) -> Option<usize> {
+        self.points.iter().position(|p| p.name == name)
+    }
+
+    /// Displacement and rotation vector of a reference point.
+    #[must_use]
+    pub fn point_motion(&self, point: usize, q: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+        let first = self.points[point].first as usize;
+        (Vector3::from_column_slice(&q[first..first + 3]), Vector3::from_column_slice(&q[first + 3..first + 6]))
+    }
+
+    /// Whether a coordinate is an angle \[rad\] rather than a length.
+    #[must_use]
+    pub fn is_rotation(&self, coordinate: usize) -> bool {
+        self.points.iter().any(|p| (p.first as usize + 3..p.first as usize + 6).contains(&coordinate))
+    }
+
+    /// Displacements of all nodes \[mm\], three per node.
+    pub fn displacements(&self, q: &[f64], out: &mut [f64]) {
+        let rotations = self.rotations(q);
+        for (node, rule) in self.rules.iter().enumerate() {
+            let target = &mut out[3 * node..3 * node + 3];
+            match rule {
+                NodeRule::Free { first } => target.copy_from_slice(&q[*first as usize..*first as usize + 3]),
+                NodeRule::Tied { point, slide, .. } => {
+                    let u = self.tied_displacement(node, *point, slide.as_ref(), q, &rotations);
+                    target.copy_from_slice(u.as_slice());
+                }
+            }
+        }
+    }
+
+    fn tied_displacement(
+        &self,
+        node: usize,
+        point: u32,
+        slide: Option<&(u32, Vector3<f64>)>,
+        q: &[f64],
+        rotations: &[Rotation],
+    ) -> Vector3<f64> {
+        let point = point as usize;
+        let arm = self.positions[node] - self.points[point].position;
+        let slid = slide.map_or_else(Vector3::zeros, |(rho, direction)| direction * q[*rho as usize]);
+        self.point_motion(point, q).0 + rotations[point].displacement(&(arm + slid)) + slid
+    }
+
+    /// Rotations of the reference points.
+    #[must_use]
+    pub fn rotations(&self, q: &[f64]) -> Vec<Rotation> {
+        (0..self.points.len()).map(|p| Rotation::new(self.point_motion(p, q).1)).collect()
+    }
+
+    /// Derivatives of all tied nodes at `q`, in the order of their ties; free nodes need none.
+    pub fn ties(&self, q: &[f64], out: &mut Vec<Tie>) {
+        let rotations = self.rotations(q);
+        out.clear();
+        for (node, rule) in self.rules.iter().enumerate() {
+            if let NodeRule::Tied { point, slide, .. } = rule {
+                let p = &self.points[*point as usize];
+                let arm = self.positions[node] - p.position;
+                let slide = slide.map(|(c, d)| (c, d, q[c as usize]));
+                out.push(Tie::new(p.first, &rotations[*point as usize], &arm, slide));
+            }
+        }
+    }
+
+    /// Generalised forces `J^T f` from nodal forces.
+    pub fn reduce(&self, ties: &[Tie], nodal: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for (rule, f) in self.rules.iter().zip(nodal.chunks_exact(3)) {
+            match rule {
+                NodeRule::Free { first } => {
+                    for (o, v) in out[*first as usize..*first as usize + 3].iter_mut().zip(f) {
+                        *o += v;
+                    }
+                }
+                NodeRule::Tied { tie, .. } => ties[*tie as usize].reduce(&Vector3::from_column_slice(f), out),
+            }
+        }
+    }
+
+    /// Second-derivative term of the tangent, `sum_i f_i . d2x_i/dq2`, as dense symmetric blocks on lists of coordinates.
+    pub fn curvature_blocks(&self, q: &[f64], nodal: &[f64], visit: &mut dyn FnMut(&[u32], &[f64])) {
+        let rotations = self.rotations(q);
+        for (index, point) in self.points.iter().enumerate() {
+            self.curvature_of_point(point, &rotations[index], q, nodal, visit);
+        }
+    }
+
+    fn curvature_of_point(
+        &self,
+        point: &ReferencePoint,
+        rotation: &Rotation,
+        q: &[f64],
+        nodal: &[f64],
+        visit: &mut dyn FnMut(&[u32], &[f64]),
+    ) {
+        let omega = [point.first + 3, point.first + 4, point.first + 5];
+        let (mut moment, mut dyad) = (Vector3::zeros(), Matrix3::zeros());
+        for &node in &point.nodes {
+            let node = node as usize;
+            let force = Vector3::from_column_slice(&nodal[3 * node..3 * node + 3]);
+            let mut arm = self.positions[node] - point.position;
+            if let NodeRule::Tied { slide: Some((rho, direction)), .. } = &self.rules[node] {
+                arm += direction * q[*rho as usize];
+                let coupling = rotation.tangent().transpose() * rotation.rotate(direction).cross(&force);
+                visit(&[omega[0], omega[1], omega[2], *rho], &slide_block(&coupling));
+            }
+            let lever = rotation.rotate(&arm);
+            moment += lever.cross(&force);
+            dyad += lever * force.transpose();
+        }
+        visit(&omega, rotation.second_derivative(&moment, &dyad).as_slice());
+    }
+
+    /// Force \[N\] and spatial moment about the current position of the point \[N mm\] of its nodes' forces.
+    #[must_use]
+    pub fn section_resultant(&self, point: usize, q: &[f64], nodal: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+        let rotation = Rotation::new(self.point_motion(point, q).1);
+        let p = &self.points[point];
+        let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+        for &node in &p.nodes {
+            let node = node as usize;
+            let f = Vector3::from_column_slice(&nodal[3 * node..3 * node + 3]);
+            let slide = match &self.rules[node] {
+                NodeRule::Tied { slide: Some((rho, direction)), .. } => direction * q[*rho as usize],
+                _ => Vector3::zeros(),
+            };
+            let lever = rotation.rotate(&(self.positions[node] - p.position + slide));
+            force += f;
+            moment += lever.cross(&f);
+        }
+        (force, moment)
+    }
+}
+
+fn claim(owner: &mut [Option<u32>], index: u32, section: &Section) -> Result<(), FemError> {
+    if section.nodes.is_empty() {
+        return Err(FemError::EmptySection { name: section.name.clone() });
+    }
+    for &node in &section.nodes {
+        let slot = owner
+            .get_mut(node as usize)
+            .ok_or_else(|| FemError::UnknownNode { node: node as usize, name: section.name.clone() })?;
+        if slot.is_some() {
+            return Err(FemError::NodeTiedTwice { node: node as usize, name: section.name.clone() });
+        }
+        *slot = Some(index);
+    }
+    Ok(())
+}
+
+/// Gives a sliding coordinate to each node of a section that has a radius (a node on the axis has none).
+fn free_radii(section: &Section, positions: &[Vector3<f64>], rules: &mut [NodeRule], next: &mut u32) {
+    let radius = |node: u32| {
+        let arm = positions[node as usize] - section.position;
+        arm - section.axis * section.axis.dot(&arm)
+    };
+    let largest = section.nodes.iter().map(|&n| radius(n).norm()).fold(0.0, f64::max);
+    for &node in &section.nodes {
+        let r = radius(node);
+        if r.norm() > 1e-9 * largest
+            && let NodeRule::Tied { slide, .. } = &mut rules[node as usize]
+        {
+            *slide = Some((*next, r.normalize()));
+            *next += 1;
+        }
+    }
+}
+
+/// 4x4 block that couples a rotation vector and a sliding coordinate.
+fn slide_block(c: &Vector3<f64>) -> [f64; 16] {
+    [0.0, 0.0, 0.0, c.x, 0.0, 0.0, 0.0, c.y, 0.0, 0.0, 0.0, c.z, c.x, c.y, c.z, 0.0]
+}

@@ -1,0 +1,128 @@
+//! Choice of the elimination order by the exact cost of each candidate.
+
+use super::dissection::nested_dissection;
+use super::error::LinearError;
+use super::fill::{Elimination, FillEstimate, postorder};
+use super::graph::Graph;
+use super::levels::{Levels, Origin, components};
+
+/// Below this number of vertices nested dissection has nothing to dissect.
+const DISSECTION_VERTICES: usize = 200;
+/// Above this number of vertices the natural order is not tried.
+const NATURAL_VERTICES: usize = 1000;
+/// Factor on the work up to which an order with independent branches is preferred to a chain.
+const BRANCH_PREFERENCE: f64 = 1.05;
+
+/// A way to order the elimination.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Ordering {
+    /// As numbered by the caller.
+    Natural,
+    /// Layer by layer along the body, from one end to the other.
+    Layers,
+    /// Layer by layer from both ends to the middle: two independent branches.
+    TwistedLayers,
+    /// Nested dissection by METIS.
+    NestedDissection,
+}
+
+impl Ordering {
+    /// Name for a log.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Natural => "natural",
+            Self::Layers => "layers",
+            Self::TwistedLayers => "layers from both ends",
+            Self::NestedDissection => "nested dissection",
+        }
+    }
+}
+
+/// An order that was tried, with its cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Way of ordering.
+    pub ordering: Ordering,
+    /// Cost of the LDLᵀ factorisation in that order.
+    pub fill: FillEstimate,
+}
+
+/// The order taken.
+pub(super) struct Choice {
+    pub(super) candidate: Candidate,
+    /// Position to vertex, children before parents.
+    pub(super) order: Vec<u32>,
+    pub(super) elimination: Elimination,
+}
+
+/// Tries all orders (or only `forced`) and takes the one with least work; all costs are returned.
+pub(super) fn choose(graph: &Graph, forced: Option<Ordering>) -> Result<(Choice, Vec<Candidate>), LinearError> {
+    let mut best: Option<Choice> = None;
+    let mut tried = Vec::new();
+    for (ordering, order) in propose(graph, forced)? {
+        let choice = evaluate(graph, ordering, order);
+        tried.push(choice.candidate);
+        if best.as_ref().is_none_or(|current| better(&choice.candidate, &current.candidate)) {
+            best = Some(choice);
+        }
+    }
+    let best = best.unwrap_or_else(|| evaluate(graph, Ordering::Natural, natural(graph)));
+    Ok((children_first(graph, best), tried))
+}
+
+fn natural(graph: &Graph) -> Vec<u32> {
+    (0..graph.len() as u32).collect()
+}
+
+fn propose(graph: &Graph, forced: Option<Ordering>) -> Result<Vec<(Ordering, Vec<u32>)>, LinearError> {
+    let wanted = |ordering| forced.is_none_or(|only| only == ordering);
+    let mut orders = Vec::new();
+    if wanted(Ordering::Layers) || wanted(Ordering::TwistedLayers) {
+        for origin in [Origin::Section, Origin::Vertex] {
+            let levels = components(graph, origin);
+            if wanted(Ordering::TwistedLayers) {
+                orders.push((Ordering::TwistedLayers, concatenate(&levels, |part| part.twisted(graph))));
+            }
+            if wanted(Ordering::Layers) {
+                orders.push((Ordering::Layers, concatenate(&levels, |part| part.order.clone())));
+            }
+        }
+    }
+    let worth = if forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
+    if wanted(Ordering::NestedDissection) && worth && !graph.neighbour.is_empty() {
+        orders.push((Ordering::NestedDissection, nested_dissection(graph)?));
+    }
+    if wanted(Ordering::Natural) && (forced.is_some() || graph.len() <= NATURAL_VERTICES) {
+        orders.push((Ordering::Natural, natural(graph)));
+    }
+    Ok(orders)
+}
+
+fn concatenate(components: &[Levels], order: impl Fn(&Levels) -> Vec<u32>) -> Vec<u32> {
+    components.iter().flat_map(order).collect()
+}
+
+fn evaluate(graph: &Graph, ordering: Ordering, order: Vec<u32>) -> Choice {
+    let elimination = Elimination::new(graph, &order);
+    let fill = elimination.estimate(graph, &order);
+    Choice { candidate: Candidate { ordering, fill }, order, elimination }
+}
+
+/// Whether `new` is to replace `current`; an order with branches may cost a little more than one without.
+fn better(new: &Candidate, current: &Candidate) -> bool {
+    let weighted = |candidate: &Candidate| {
+        let chain = matches!(candidate.ordering, Ordering::Layers | Ordering::Natural);
+        candidate.fill.flops * if chain { BRANCH_PREFERENCE } else { 1.0 }
+    };
+    weighted(new) < weighted(current)
+}
+
+/// The same elimination numbered in postorder of its tree, so that every subtree is contiguous.
+fn children_first(graph: &Graph, choice: Choice) -> Choice {
+    let post = postorder(&choice.elimination.parent);
+    if post.iter().enumerate().all(|(rank, &position)| rank == position as usize) {
+        return choice;
+    }
+    let order = post.iter().map(|&position| choice.order[position as usize]).collect();
+    Choice { candidate: choice.candidate, ..evaluate(graph, choice.candidate.ordering, order) }
+}

@@ -1,0 +1,331 @@
+//! A block of equal bricks with one law: geometry formed once, states, evaluation in batches.
+
+use nalgebra::{Matrix3, Vector3};
+use subrope_geometry::Hexahedron;
+use subrope_material::{Law, StateKind};
+
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::SolidFields;
+use super::kernel::{NodeVector, PointGeometry};
+use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
+use crate::{FemError, parallel};
+
+/// Elements evaluated before their results are scattered, in index order: sums do not depend on threads.
+const BATCH: usize = 64;
+
+/// What a block is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidMesh<'a> {
+    /// Reference coordinates of all nodes \[mm\].
+    pub positions: &'a [Vector3<f64>],
+    /// Connectivity, flat, VTK order.
+    pub cells: &'a [u32],
+    /// Labels of the elements, for messages.
+    pub labels: &'a [u64],
+    /// Fibre frames (columns e1 e2 e3) at all integration points, element by element.
+    pub frames: &'a [Matrix3<f64>],
+}
+
+/// Equal bricks with one law. `F` says what is averaged.
+pub struct SolidBlock<const N: usize, L, F> {
+    law: L,
+    nodes: Vec<[u32; N]>,
+    labels: Vec<u64>,
+    points: Vec<PointGeometry<N>>,
+    points_per_element: usize,
+    committed: Vec<f64>,
+    trial: Vec<f64>,
+    results: Vec<ElementResult<N>>,
+    dissipation: [Option<usize>; 2],
+    formulation: std::marker::PhantomData<F>,
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
+    /// Forms the geometry of every integration point.
+    ///
+    /// # Errors
+    /// [`FemError::Count`] when frames, labels and cells do not fit, [`FemError::Geometry`] for an inverted element,
+    /// [`FemError::NoFibreTerm`] when the formulation needs one and the law has none.
+    pub fn new<H: Hexahedron<N>>(mesh: &SolidMesh<'_>, law: L) -> Result<Self, FemError> {
+        if F::NEEDS_FIBRE_TERM && !law.has_fibre_term() {
+            return Err(FemError::NoFibreTerm { law: law.name() });
+        }
+        let rule = H::quadrature();
+        let count = mesh.cells.len() / N;
+        expect_count("connectivity entries", mesh.cells.len(), count * N)?;
+        expect_count("element labels", mesh.labels.len(), count)?;
+        expect_count("fibre frames", mesh.frames.len(), count * rule.len())?;
+        let mut nodes = Vec::with_capacity(count);
+        let mut points = Vec::with_capacity(count * rule.len());
+        for (e, cell) in mesh.cells.chunks_exact(N).enumerate() {
+            let cell: [u32; N] = std::array::from_fn(|a| cell[a]);
+            let x = element_positions(mesh.positions, &cell)?;
+            for (q, point) in rule.iter().enumerate() {
+                let frame = mesh.frames[e * rule.len() + q];
+                let map = H::gradient(point.xi);
+                points.push(point_geometry(&map, &x, frame, point.weight, mesh.labels[e])?);
+            }
+            nodes.push(cell);
+        }
+        let states = count * rule.len() * law.state_len();
+        Ok(Self {
+            dissipation: dissipation_offsets(&law),
+            law,
+            nodes,
+            labels: mesh.labels.to_vec(),
+            points,
+            points_per_element: rule.len(),
+            committed: vec![0.0; states],
+            trial: vec![0.0; states],
+            results: vec![ElementResult::zero(); BATCH.min(count)],
+            formulation: std::marker::PhantomData,
+        })
+    }
+
+    /// The law.
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+
+    /// Committed state of a point.
+    pub(super) fn state(&self, element: usize, point: usize) -> &[f64] {
+        let n = self.law.state_len();
+        let first = (element * self.points_per_element + point) * n;
+        &self.committed[first..first + n]
+    }
+
+    /// Committed state of all points of an element.
+    pub(super) fn element_state(&self, element: usize) -> &[f64] {
+        let stride = self.stride();
+        &self.committed[element * stride..(element + 1) * stride]
+    }
+
+    pub(super) fn element_points(&self, element: usize) -> &[PointGeometry<N>] {
+        &self.points[element * self.points_per_element..(element + 1) * self.points_per_element]
+    }
+
+    pub(super) fn gather(&self, element: usize, displacement: &[f64]) -> NodeVector<N> {
+        let mut out = [[0.0; N]; 3];
+        for (a, &node) in self.nodes[element].iter().enumerate() {
+            for (k, line) in out.iter_mut().enumerate() {
+                line[a] = displacement[3 * node as usize + k];
+            }
+        }
+        out
+    }
+
+    /// Numbers of state per element.
+    fn stride(&self) -> usize {
+        self.points_per_element * self.law.state_len()
+    }
+
+    pub(super) fn failure(&self, element: usize, failure: ElementFailure) -> FemError {
+        let element = self.labels[element];
+        match failure {
+            ElementFailure::Law(point, source) => FemError::Law { element, point, source },
+            ElementFailure::MeanVolume(ratio) => FemError::MeanVolume { element, ratio },
+        }
+    }
+
+    #[inline(always)]
+    fn element<const SYMMETRIC: bool>(
+        &self,
+        element: usize,
+        configuration: &Configuration<'_>,
+        request: Request,
+        new: &mut [f64],
+        out: &mut ElementResult<N>,
+    ) {
+        out.force = [[0.0; N]; 3];
+        out.energies = Energies::default();
+        if request == Request::Tangent {
+            out.stiffness = [[[[0.0; N]; 3]; N]; 3];
+        }
+        let input = ElementInput {
+            law: &self.law,
+            points: self.element_points(element),
+            displacement: self.gather(element, configuration.displacement),
+            old: self.element_state(element),
+            time_increment: configuration.time_increment,
+            temperature: configuration.temperature,
+            request,
+        };
+        out.failure = F::evaluate::<L, SYMMETRIC>(&input, new, out).err();
+    }
+
+    fn elements(
+        &self,
+        first: usize,
+        configuration: &Configuration<'_>,
+        request: Request,
+        trial: &mut [f64],
+        out: &mut [ElementResult<N>],
+    ) {
+        let stride = self.stride();
+        // One dispatch per run of elements: the kernel below is compiled for each instruction set.
+        pulp::Arch::new().dispatch(|| {
+            for (i, result) in out.iter_mut().enumerate() {
+                let new = &mut trial[i * stride..(i + 1) * stride];
+                if self.law.is_symmetric() {
+                    self.element::<true>(first + i, configuration, request, new, result);
+                } else {
+                    self.element::<false>(first + i, configuration, request, new, result);
+                }
+            }
+        });
+    }
+
+    fn batch(&self, first: usize, c: &Configuration<'_>, request: Request, work: Work<'_, N>) {
+        let Work { trial, results } = work;
+        if c.parallel && results.len() > 8 {
+            let middle = results.len() / 2;
+            let (left, right) = results.split_at_mut(middle);
+            let (old, new) = trial.split_at_mut(middle * self.stride());
+            parallel::join(
+                || self.batch(first, c, request, Work { trial: old, results: left }),
+                || self.batch(first + middle, c, request, Work { trial: new, results: right }),
+            );
+        } else {
+            self.elements(first, c, request, trial, results);
+        }
+    }
+}
+
+/// Buffers of a batch.
+struct Work<'a, const N: usize> {
+    trial: &'a mut [f64],
+    results: &'a mut [ElementResult<N>],
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> Contribution for SolidBlock<N, L, F> {
+    fn element_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    fn element_nodes(&self, element: usize) -> &[u32] {
+        &self.nodes[element]
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.law.is_symmetric()
+    }
+
+    fn has_potential(&self) -> bool {
+        self.law.has_potential()
+    }
+
+    fn assemble(
+        &mut self,
+        configuration: &Configuration<'_>,
+        request: Request,
+        sink: &mut dyn Sink,
+    ) -> Result<Energies, FemError> {
+        let (mut trial, mut results) = (std::mem::take(&mut self.trial), std::mem::take(&mut self.results));
+        let outcome = self.assemble_with(configuration, request, sink, Work { trial: &mut trial, results: &mut results });
+        (self.trial, self.results) = (trial, results);
+        outcome
+    }
+
+    fn commit(&mut self) {
+        self.committed.copy_from_slice(&self.trial);
+    }
+
+    fn fields(&self) -> Option<&dyn SolidFields> {
+        Some(self)
+    }
+
+    fn dissipated(&self) -> [f64; 2] {
+        let n = self.law.state_len();
+        std::array::from_fn(|mode| {
+            self.dissipation[mode].map_or(0.0, |offset| {
+                self.points.iter().zip(self.committed.chunks_exact(n)).map(|(p, s)| p.volume * s[offset]).sum()
+            })
+        })
+    }
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
+    fn assemble_with(
+        &self,
+        configuration: &Configuration<'_>,
+        request: Request,
+        sink: &mut dyn Sink,
+        work: Work<'_, N>,
+    ) -> Result<Energies, FemError> {
+        let stride = self.stride();
+        let mut energies = Energies::default();
+        let mut first = 0;
+        while first < self.nodes.len() {
+            let count = work.results.len().min(self.nodes.len() - first);
+            let trial = &mut work.trial[first * stride..(first + count) * stride];
+            let results = &mut work.results[..count];
+            self.batch(first, configuration, request, Work { trial, results });
+            for (i, result) in work.results[..count].iter_mut().enumerate() {
+                if let Some(failure) = result.failure.take() {
+                    return Err(self.failure(first + i, failure));
+                }
+                energies += result.energies;
+                let stiffness = (request == Request::Tangent)
+                    .then(|| result.stiffness.as_flattened().as_flattened().as_flattened());
+                sink.add(first + i, result.force.as_flattened(), stiffness);
+            }
+            first += count;
+        }
+        Ok(energies)
+    }
+}
+
+fn expect_count(what: &'static str, found: usize, expected: usize) -> Result<(), FemError> {
+    if found == expected { Ok(()) } else { Err(FemError::Count { what, found, expected }) }
+}
+
+fn element_positions<const N: usize>(
+    positions: &[Vector3<f64>],
+    cell: &[u32; N],
+) -> Result<[Vector3<f64>; N], FemError> {
+    let mut x = [Vector3::zeros(); N];
+    for (target, &node) in x.iter_mut().zip(cell) {
+        *target = *positions
+            .get(node as usize)
+            .ok_or_else(|| FemError::UnknownNode { node: node as usize, name: "connectivity".into() })?;
+    }
+    // Differences to the first node: coordinates far from the origin lose no digits of the Jacobian.
+    let origin = x[0];
+    Ok(x.map(|p| p - origin))
+}
+
+fn point_geometry<const N: usize>(
+    map: &[[f64; N]; 3],
+    x: &[Vector3<f64>; N],
+    frame: Matrix3<f64>,
+    weight: f64,
+    label: u64,
+) -> Result<PointGeometry<N>, FemError> {
+    let mut jacobian = Matrix3::zeros();
+    for (i, line) in map.iter().enumerate() {
+        for (a, value) in line.iter().enumerate() {
+            for k in 0..3 {
+                jacobian[(k, i)] += x[a][k] * value;
+            }
+        }
+    }
+    let determinant = jacobian.determinant();
+    let inverse = jacobian
+        .try_inverse()
+        .filter(|_| determinant > 0.0)
+        .ok_or(subrope_geometry::GeometryError::Inverted { cell_label: label, determinant })?;
+    // dN/dX_fibre = R^T J^-T dN/dxi.
+    let to_fibre = frame.transpose() * inverse.transpose();
+    let mut gradient = [[0.0; N]; 3];
+    for (j, line) in gradient.iter_mut().enumerate() {
+        for (a, value) in line.iter_mut().enumerate() {
+            *value = (0..3).map(|i| to_fibre[(j, i)] * map[i][a]).sum();
+        }
+    }
+    Ok(PointGeometry { gradient, frame, volume: determinant * weight })
+}
+
+fn dissipation_offsets<L: Law>(law: &L) -> [Option<usize>; 2] {
+    [StateKind::TransverseDissipation, StateKind::LongitudinalDissipation]
+        .map(|kind| law.state_variables().iter().find(|v| v.kind == kind).map(|v| v.offset))
+}

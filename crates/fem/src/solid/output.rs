@@ -1,0 +1,118 @@
+//! What a solid block tells about its integration points at the committed state.
+
+use nalgebra::Matrix3;
+use subrope_material::{Law, StateVariable, StrainModes};
+
+use super::SolidBlock;
+use super::formulation::{ElementInput, ElementResult, Formulation};
+use super::kernel;
+use crate::FemError;
+use crate::contribution::Request;
+
+/// State of one integration point.
+#[derive(Clone, Debug)]
+pub struct PointSample<'a> {
+    /// Reference volume \[mm^3\].
+    pub volume: f64,
+    /// Fibre frame in the reference configuration, columns e1 e2 e3.
+    pub frame: Matrix3<f64>,
+    /// Deformation gradient, global axes.
+    pub deformation_gradient: Matrix3<f64>,
+    /// Cauchy stress \[MPa\], global axes, as the element's equilibrium sees it (averaged parts included).
+    pub cauchy_stress: Matrix3<f64>,
+    /// Strain modes of the point itself.
+    pub modes: StrainModes,
+    /// State of the law.
+    pub state: &'a [f64],
+}
+
+/// Read access to the integration points of a block, whatever its element and law.
+pub trait SolidFields {
+    /// Number of elements.
+    fn element_count(&self) -> usize;
+    /// Integration points per element.
+    fn points_per_element(&self) -> usize;
+    /// Layout of the state of a point.
+    fn state_variables(&self) -> &[StateVariable];
+    /// Name of the law.
+    fn law_name(&self) -> &'static str;
+    /// Bytes of state per integration point, committed and trial.
+    fn state_bytes_per_point(&self) -> usize;
+    /// Committed state and reference volume of a point: cheap, no stresses.
+    fn point_state(&self, element: usize, point: usize) -> (&[f64], f64);
+    /// Visits the points of one element at committed nodal displacements.
+    ///
+    /// # Errors
+    /// As an assembly at the same displacements.
+    fn sample(
+        &self,
+        element: usize,
+        displacement: &[f64],
+        visit: &mut dyn FnMut(usize, &PointSample<'_>),
+    ) -> Result<(), FemError>;
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L, F> {
+    fn element_count(&self) -> usize {
+        crate::Contribution::element_count(self)
+    }
+
+    fn points_per_element(&self) -> usize {
+        self.element_points(0).len()
+    }
+
+    fn state_variables(&self) -> &[StateVariable] {
+        self.law().state_variables()
+    }
+
+    fn law_name(&self) -> &'static str {
+        self.law().name()
+    }
+
+    fn state_bytes_per_point(&self) -> usize {
+        2 * size_of::<f64>() * self.law().state_len()
+    }
+
+    fn point_state(&self, element: usize, point: usize) -> (&[f64], f64) {
+        (self.state(element, point), self.element_points(element)[point].volume)
+    }
+
+    fn sample(
+        &self,
+        element: usize,
+        displacement: &[f64],
+        visit: &mut dyn FnMut(usize, &PointSample<'_>),
+    ) -> Result<(), FemError> {
+        let points = self.element_points(element);
+        let n = self.law().state_len();
+        let input = ElementInput {
+            law: self.law(),
+            points,
+            displacement: self.gather(element, displacement),
+            old: self.element_state(element),
+            time_increment: 0.0,
+            temperature: crate::REFERENCE_TEMPERATURE,
+            request: Request::Residual,
+        };
+        let mut result = Box::new(ElementResult::zero());
+        let mut new = vec![0.0; points.len() * n];
+        F::evaluate::<L, true>(&input, &mut new, &mut result).map_err(|f| self.failure(element, f))?;
+        for (q, point) in points.iter().enumerate() {
+            let hr = input.gradient(q);
+            let fr = point.frame + hr;
+            let jacobian = fr.determinant() * point.frame.determinant();
+            let stress = kernel::tensor(&result.second_piola[q]);
+            let sample = PointSample {
+                volume: point.volume,
+                frame: point.frame,
+                deformation_gradient: fr * point.frame.transpose(),
+                cauchy_stress: fr * stress * fr.transpose() / jacobian,
+                modes: StrainModes::from_displacement_gradient(&point.frame.tr_mul(&hr))
+                    .map_err(|e| self.failure(element, super::ElementFailure::Law(q, e)))?,
+                state: self.state(element, q),
+            };
+            visit(q, &sample);
+        }
+        Ok(())
+    }
+}
