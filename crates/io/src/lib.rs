@@ -1,1 +1,25 @@
-//! (under construction)
+//! Files of the project: Abaqus and CalculiX decks in and out, VTKHDF results, histories, summaries.
+//!
+//! The crate takes and gives plain data (meshes, frames, slices of numbers); it knows no element and no solver.
+//! Every failure is an [`IoError`], whose [`class`](IoError::class) tells a wrong input from a failed output.
+
+pub mod atomic;
+pub mod deck;
+pub mod error;
+pub mod history;
+pub mod memory;
+pub mod summary;
+#[cfg(feature = "hdf5")]
+pub mod vtkhdf;
+
+pub use atomic::AtomicFile;
+pub use deck::{Deck, DeckError, DeckErrorKind, DeckView, Ignored, NumberFormat, parse_deck, read_deck, write_deck};
+pub use error::{Action, ErrorClass, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
+pub use history::{Column, History, HistoryWriter, read_history};
+pub use memory::peak_memory;
+pub use summary::write_json;
+#[cfg(feature = "hdf5")]
+pub use vtkhdf::{
+    FieldSpec, Location, Precision, Provenance, ResultReader, ResultWriter, StaticField, WriterOptions,
+    write_mesh_vtkhdf,
+};

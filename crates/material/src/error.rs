@@ -33,6 +33,14 @@ pub enum LawError {
         /// What it must satisfy.
         requirement: &'static str,
     },
+    /// A slice of state numbers has the wrong length.
+    #[error("the law keeps {expected} state numbers per point, {found} were given")]
+    StateLength {
+        /// What the law needs.
+        expected: usize,
+        /// What was given.
+        found: usize,
+    },
     /// A mean elongation was given to a law that has no fibre term of its own.
     #[error("the law has no separate fibre term, so its elongation cannot be averaged: choose another element")]
     NoFibreTerm,

@@ -7,12 +7,13 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-use crate::LawError;
+use crate::{ConjugateForces, LawError};
 
 /// What a law is asked at one integration point. Everything is in the material frame.
 #[derive(Clone, Debug)]
 pub struct PointInput {
-    /// Displacement gradient `H = F - 1` \[-\], reference configuration. `H` and not `F`, so that a strain of 1e-14 survives.
+    /// Displacement gradient `H = F - 1` \[-\], reference configuration. `H` and not `F`, so that a strain of 1e-14
+    /// survives.
     pub displacement_gradient: Matrix3<f64>,
     /// Takes the place of the fibre elongation `I_elong` \[-\] in the axial energy `W_A` (mean-elongation brick);
     /// `None`: the point's own elongation.
@@ -21,6 +22,23 @@ pub struct PointInput {
     pub time_increment: f64,
     /// Temperature \[K\].
     pub temperature: f64,
+}
+
+impl PointInput {
+    /// Input at a displacement gradient, with the point's own elongation, a time increment of 1 s and 293.15 K.
+    #[must_use]
+    #[inline]
+    pub fn new(displacement_gradient: Matrix3<f64>) -> Self {
+        Self { displacement_gradient, mean_elongation: None, time_increment: 1.0, temperature: 293.15 }
+    }
+
+    /// The same with a mean elongation.
+    #[must_use]
+    #[inline]
+    pub fn with_mean_elongation(mut self, elongation: f64) -> Self {
+        self.mean_elongation = Some(elongation);
+        self
+    }
 }
 
 /// How much of the answer is needed.
@@ -32,11 +50,12 @@ pub enum Request {
     Tangent,
 }
 
-/// The share of the response that is conjugate to a prescribed mean elongation `e` (see [`PointInput::mean_elongation`]).
+/// The share of the response that is conjugate to a prescribed mean elongation `e` (see
+/// [`PointInput::mean_elongation`]).
 ///
 /// With `W(C, e)` the axial energy written in the independent elongation `e`, the total differential of the response is
-/// `dS = tangent dE + stress_by_elongation de` and `d(fibre_stress) = fibre_stress_by_strain . dE + fibre_stiffness de`.
-/// The two vectors are equal when the law's tangent is symmetric.
+/// `dS = tangent dE + stress_by_elongation de` and `d(fibre_stress) = fibre_stress_by_strain . dE + fibre_stiffness
+/// de`. The two vectors are equal when the law's tangent is symmetric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FibreResponse {
     /// `dW/de` \[MPa\], the fibre's Kirchhoff stress.
@@ -61,11 +80,11 @@ pub struct Response {
     pub fibre: FibreResponse,
     /// Stored energy after the increment \[mJ/mm^3\]: elastic potential and back-stress energy.
     pub stored_energy: f64,
-    /// Incremental potential \[mJ/mm^3\] whose derivative by `E` is `S` (stored energy plus what slip costs in this increment
-    /// at the integrated yield stress); `None` where there is none (pressure-dependent friction).
+    /// Incremental potential \[mJ/mm^3\] whose derivative by `E` is `S` (stored energy plus what slip costs in this
+    /// increment at the integrated yield stress); `None` where there is none (pressure-dependent friction).
     pub incremental_potential: Option<f64>,
-    /// Dissipated in this increment by transverse and by longitudinal sliding \[mJ/mm^3\], mid-point value: for the energy
-    /// balance. The end value accumulates in the state.
+    /// Dissipated in this increment by transverse and by longitudinal sliding \[mJ/mm^3\], mid-point value: for the
+    /// energy balance. The end value accumulates in the state.
     pub dissipated_mid: [f64; 2],
 }
 
@@ -121,10 +140,20 @@ pub trait Law: Send + Sync + std::fmt::Debug {
     /// Whether [`PointInput::mean_elongation`] is understood: the law has a fibre term written apart.
     fn has_fibre_term(&self) -> bool;
 
-    /// Answers at one point. `old` is read, `new` is written (both of length [`Law::state_len`]); calling twice gives the same.
+    /// Forces conjugate to the strain modes after the increment from `old`; `None` for a law not written in the modes.
     ///
     /// # Errors
-    /// [`LawError`] on `J <= 0`, on a non-finite input or result and past a lock-up. `new` and `out` are then unspecified.
+    /// As [`Law::evaluate`].
+    fn modal_forces(&self, _input: &PointInput, _old: &[f64]) -> Result<Option<ConjugateForces>, LawError> {
+        Ok(None)
+    }
+
+    /// Answers at one point. `old` is read, `new` is written (both of length [`Law::state_len`]); calling twice gives
+    /// the same.
+    ///
+    /// # Errors
+    /// [`LawError`] on `J <= 0`, on a non-finite input or result and past a lock-up. `new` and `out` are then
+    /// unspecified.
     fn evaluate(
         &self,
         input: &PointInput,

@@ -1,2 +1,5 @@
 //! The `subrope` command.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    subrope::cli::main()
+}

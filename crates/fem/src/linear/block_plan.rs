@@ -187,7 +187,9 @@ impl Block {
         self.diagonal.sort_unstable_by_key(|entry| (entry.col, entry.row));
         self.to_next.sort_unstable_by_key(|entry| (entry.col, entry.row));
         self.from_next.sort_unstable_by_key(|entry| (entry.row as usize / STRIPE_ROWS, entry.col, entry.row));
-        [&mut self.diagonal, &mut self.to_next, &mut self.from_next].map(|entries| entries.shrink_to_fit());
+        for entries in [&mut self.diagonal, &mut self.to_next, &mut self.from_next] {
+            entries.shrink_to_fit();
+        }
         let mut begin = 0;
         for first in (0..next_rows).step_by(STRIPE_ROWS) {
             let rows = first..(first + STRIPE_ROWS).min(next_rows);

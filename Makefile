@@ -1,0 +1,33 @@
+# make bend   build and run the main job, a strand bent by turning its ends -> out/bent_strand
+# make test   run all tests
+# Without make: sh scripts/bend.sh, sh scripts/test.sh.
+
+RESULT ?= out/bent_strand/results.vtkhdf
+PICTURE ?= $(RESULT:.vtkhdf=.png)
+
+.PHONY: bend test check bench picture clean setup
+
+bend:
+	@sh scripts/bend.sh
+
+test:
+	@sh scripts/test.sh
+
+# Formatting, lints over every set of features, documentation, arrows between the crates.
+check:
+	@sh scripts/check.sh
+
+bench: setup
+	cargo bench --workspace
+
+# Renders the last step of RESULT; runs the main job first when there is no result yet.
+picture:
+	@test -f "$(RESULT)" || sh scripts/bend.sh
+	@python=$$(sh scripts/venv.sh) && "$$python" scripts/render_strand.py "$(RESULT)" "$(PICTURE)"
+
+clean:
+	cargo clean
+	rm -rf out
+
+setup:
+	@sh scripts/setup.sh

@@ -1,0 +1,171 @@
+//! LU over the levels and sparse LU.
+
+use proptest::prelude::*;
+
+use super::fixtures::{
+    Grid, Random, brick_stiffness, dense_solution, difference, hold, pattern_of, random_cliques, random_values, strand,
+};
+use crate::linear::{LinearError, LinearSolver, Method, SolverOptions, SparsePattern, Storage};
+
+const METHODS: [Method; 2] = [Method::BlockLu, Method::SparseLu];
+
+fn by(method: Method) -> SolverOptions {
+    SolverOptions { unsymmetric: Some(method), ..SolverOptions::default() }
+}
+
+fn solve(pattern: &SparsePattern, values: &[f64], rhs: &[f64], options: &SolverOptions) -> Vec<f64> {
+    let mut solver = LinearSolver::analyse(pattern, options).unwrap();
+    let report = solver.factorise(values).unwrap();
+    assert_eq!(report.negative_pivots, None);
+    let mut solution = vec![0.0; pattern.n()];
+    let report = solver.solve(rhs, &mut solution).unwrap();
+    assert!(report.residual < 1e-14, "{report:?}");
+    solution
+}
+
+/// A strand with unsymmetric couplings of a tenth of its stiffness.
+fn unsymmetric_strand(nx: usize, ny: usize, nz: usize) -> (SparsePattern, Vec<f64>) {
+    let (pattern, mut values) = strand(nx, ny, nz, Storage::Full);
+    let mut random = Random(11);
+    values.iter_mut().for_each(|value| *value *= 1.0 + 0.05 * random.signed());
+    (pattern, values)
+}
+
+#[test]
+fn both_methods_solve_a_slender_strand() {
+    let (pattern, values) = unsymmetric_strand(4, 4, 30);
+    let rhs = Random(12).vector(pattern.n());
+    let block = solve(&pattern, &values, &rhs, &by(Method::BlockLu));
+    let sparse = solve(&pattern, &values, &rhs, &by(Method::SparseLu));
+    assert!(difference(&block, &sparse) < 1e-9);
+    assert!(difference(&block, &dense_solution(&pattern, &values, &rhs)) < 1e-9);
+}
+
+#[test]
+fn symmetric_values_give_the_symmetric_solution() {
+    let (full, full_values) = strand(3, 4, 25, Storage::Full);
+    let (lower, lower_values) = strand(3, 4, 25, Storage::Lower);
+    let rhs = Random(13).vector(full.n());
+    let mut solver = LinearSolver::analyse(&lower, &SolverOptions::default()).unwrap();
+    solver.factorise(&lower_values).unwrap();
+    let mut expected = vec![0.0; lower.n()];
+    solver.solve(&rhs, &mut expected).unwrap();
+    for method in METHODS {
+        assert!(difference(&solve(&full, &full_values, &rhs, &by(method)), &expected) < 1e-8);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn random_systems(n in 1usize..60, count in 0usize..30, size in 1usize..8, seed: u64) {
+        let mut random = Random(seed);
+        let pattern = pattern_of(n, &random_cliques(n, count, size, &mut random), Storage::Full);
+        let values = random_values(&pattern, &mut random, 1.1 * n as f64);
+        let rhs = random.vector(n);
+        let expected = dense_solution(&pattern, &values, &rhs);
+        for method in METHODS {
+            let solution = solve(&pattern, &values, &rhs, &by(method));
+            prop_assert!(difference(&solution, &expected) < 1e-11);
+        }
+    }
+}
+
+#[test]
+fn rows_are_exchanged_inside_a_level() {
+    // Zero diagonal: no factorisation without exchanges.
+    let pattern = pattern_of(2, &[vec![0, 1]], Storage::Full);
+    for method in METHODS {
+        assert_eq!(solve(&pattern, &[0.0, 2.0, 4.0, 0.0], &[8.0, 6.0], &by(method)), [3.0, 2.0]);
+    }
+}
+
+#[test]
+fn a_floating_body_is_singular() {
+    let grid = Grid::new(3, 3, 12);
+    let pattern = grid.pattern(Storage::Full);
+    let values = grid.assemble(&pattern, &brick_stiffness());
+    let mut solver = LinearSolver::analyse(&pattern, &by(Method::BlockLu)).unwrap();
+    assert!(matches!(solver.factorise(&values), Err(LinearError::Singular { .. })));
+    // Without access to its pivots the sparse LU shows itself singular by the solution only: a load that no
+    // displacement balances leaves a residual, or the solution overflows.
+    let mut solver = LinearSolver::analyse(&pattern, &by(Method::SparseLu)).unwrap();
+    let outcome = solver.factorise(&values).and_then(|_| {
+        let mut solution = vec![0.0; grid.n];
+        solver.solve(&vec![1.0; grid.n], &mut solution)
+    });
+    assert!(outcome.is_err(), "{outcome:?}");
+}
+
+#[test]
+fn an_unknown_without_stiffness_is_singular() {
+    let (pattern, mut values) = unsymmetric_strand(3, 3, 6);
+    for other in 0..pattern.n() {
+        for (row, col) in [(100, other), (other, 100)] {
+            if let Some(slot) = pattern.slot(row, col) {
+                values[slot] = 0.0;
+            }
+        }
+    }
+    let mut solver = LinearSolver::analyse(&pattern, &by(Method::BlockLu)).unwrap();
+    assert!(matches!(solver.factorise(&values), Err(LinearError::Singular { .. })));
+    let mut solver = LinearSolver::analyse(&pattern, &by(Method::SparseLu)).unwrap();
+    let outcome = solver.factorise(&values).and_then(|_| {
+        let mut solution = vec![0.0; pattern.n()];
+        solver.solve(&vec![1.0; pattern.n()], &mut solution)
+    });
+    assert!(outcome.is_err(), "{outcome:?}");
+}
+
+#[test]
+fn trivial_systems() {
+    for n in [0, 1] {
+        let pattern = pattern_of(n, &[], Storage::Full);
+        for method in METHODS {
+            assert_eq!(solve(&pattern, &vec![-4.0; n], &vec![2.0; n], &by(method)), vec![-0.5; n]);
+        }
+    }
+}
+
+#[test]
+fn disconnected_bodies_and_lone_unknowns() {
+    let first = Grid::new(3, 3, 8);
+    let shifted = first.elements.iter().map(|dofs| dofs.iter().map(|&dof| dof + first.n as u32 + 5).collect());
+    let elements: Vec<Vec<u32>> = first.elements.iter().cloned().chain(shifted).collect();
+    let both = Grid { n: 2 * first.n + 5, elements };
+    let pattern = both.pattern(Storage::Full);
+    let mut values = both.assemble(&pattern, &brick_stiffness());
+    hold(&pattern, &mut values, both.n, 0.5);
+    let mut random = Random(14);
+    values.iter_mut().for_each(|value| *value *= 1.0 + 0.1 * random.signed());
+    let rhs = random.vector(both.n);
+    let expected = dense_solution(&pattern, &values, &rhs);
+    for method in METHODS {
+        assert!(difference(&solve(&pattern, &values, &rhs, &by(method)), &expected) < 1e-11);
+    }
+}
+
+#[test]
+fn memory_decides_between_the_methods() {
+    let slender = Grid::new(3, 3, 40).pattern(Storage::Full);
+    let method = |options: &SolverOptions| LinearSolver::analyse(&slender, options).unwrap().analysis().method;
+    assert_eq!(method(&SolverOptions::default()), Method::BlockLu);
+    assert_eq!(method(&SolverOptions { block_memory: 1000, ..SolverOptions::default() }), Method::SparseLu);
+    assert_eq!(method(&SolverOptions { block_memory_ratio: 0.0, ..SolverOptions::default() }), Method::SparseLu);
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn threads_do_not_change_a_bit() {
+    let (pattern, values) = unsymmetric_strand(6, 6, 24);
+    let rhs = Random(15).vector(pattern.n());
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solve(&pattern, &values, &rhs, &by(Method::BlockLu)))
+    };
+    let reference = run(1);
+    for threads in [2, 3, 4] {
+        assert_eq!(reference, run(threads));
+    }
+}

@@ -1,0 +1,262 @@
+//! Histories: one row of numbers per increment as comma-separated text.
+
+use crate::error::{Action, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A column of a history.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Column {
+    /// What is listed, for example `force`.
+    pub name: String,
+    /// Its unit, for example `N`; `-` for a pure number.
+    pub unit: String,
+}
+
+impl Column {
+    /// A column of a name and a unit.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
+    }
+
+    fn check(&self) -> Result<(), ValueError> {
+        let wrong = |text: &str| {
+            text.is_empty() || text.trim() != text || text.contains(['[', ']', ',', '"', '#']) || has_control(text)
+        };
+        match wrong(&self.name) || wrong(&self.unit) {
+            true => Err(ValueError::Name { name: format!("{} [{}]", self.name, self.unit) }),
+            false => Ok(()),
+        }
+    }
+
+    fn parse(header: &str) -> Option<Self> {
+        let (name, unit) = header.trim().strip_suffix(']')?.split_once('[')?;
+        let column = Self::new(name.trim(), unit.trim());
+        column.check().ok().map(|()| column)
+    }
+}
+
+fn has_control(text: &str) -> bool {
+    text.chars().any(char::is_control)
+}
+
+/// Writes a history row by row; every row is on the disk (handed to the system) when [`row`](Self::row) returns.
+#[derive(Debug)]
+pub struct HistoryWriter {
+    path: PathBuf,
+    file: File,
+    columns: Vec<Column>,
+    line: String,
+    failed: bool,
+}
+
+impl HistoryWriter {
+    /// Creates the file, replacing an older one, and writes the header `name [unit],name [unit],...`.
+    ///
+    /// # Errors
+    /// [`ValueError::Name`] and [`ValueError::DuplicateName`] for headers that could not be read back;
+    /// [`IoError::Output`] when the file cannot be written.
+    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, IoError> {
+        check_columns(columns)?;
+        let file = File::create(path).map_err(|e| OutputError::new(path, Action::Create, e))?;
+        let mut writer =
+            Self { path: path.to_path_buf(), file, columns: columns.to_vec(), line: String::new(), failed: false };
+        let headers: Vec<String> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+        writer.line = headers.join(",");
+        writer.put()?;
+        Ok(writer)
+    }
+
+    /// Appends one row in the order of the columns; numbers are the shortest text that reads back to the same value.
+    ///
+    /// # Errors
+    /// [`ValueError::Count`], [`ValueError::NotFinite`] (nothing is written then); [`IoError::Output`], after which
+    /// every further row is refused.
+    pub fn row(&mut self, values: &[f64]) -> Result<(), IoError> {
+        if values.len() != self.columns.len() {
+            return Err(ValueError::Count { expected: self.columns.len(), got: values.len() }.into());
+        }
+        if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+            let name = self.columns[index].name.clone();
+            return Err(ValueError::NotFinite { name, index, value: values[index] }.into());
+        }
+        self.line.clear();
+        for (i, value) in values.iter().enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            let _ = write!(self.line, "{comma}{value:?}");
+        }
+        self.put()
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn put(&mut self) -> Result<(), IoError> {
+        if self.failed {
+            return Err(OutputError::new(&self.path, Action::Write, OutputCause::EarlierFailure).into());
+        }
+        self.line.push('\n');
+        let written = self.file.write_all(self.line.as_bytes()).and_then(|()| self.file.flush());
+        self.failed = written.is_err();
+        written.map_err(|e| OutputError::new(&self.path, Action::Write, e).into())
+    }
+}
+
+fn check_columns(columns: &[Column]) -> Result<(), ValueError> {
+    if columns.is_empty() {
+        return Err(ValueError::Count { expected: 1, got: 0 });
+    }
+    for (i, column) in columns.iter().enumerate() {
+        column.check()?;
+        if columns[..i].iter().any(|c| c.name == column.name) {
+            return Err(ValueError::DuplicateName { name: column.name.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// A history read back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Its rows, one value per column.
+    pub rows: Vec<Vec<f64>>,
+    /// Whether the last line was cut (a killed run) and left out.
+    pub truncated: bool,
+}
+
+impl History {
+    /// Values of the column `name`; `None` when there is no such column.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let index = self.columns.iter().position(|c| c.name == name)?;
+        Some(self.rows.iter().filter_map(|row| row.get(index).copied()).collect())
+    }
+}
+
+/// Reads a history. A last line without its line break is left out and reported by [`History::truncated`].
+///
+/// # Errors
+/// [`IoError::Read`] when the file cannot be read, [`IoError::Text`] with the line of a malformed header or row.
+pub fn read_history(path: &Path) -> Result<History, IoError> {
+    let text = std::fs::read_to_string(path).map_err(|source| IoError::Read { path: path.to_path_buf(), source })?;
+    let fault = |line, kind| TextError { path: path.to_path_buf(), line, kind };
+    let truncated = !text.is_empty() && !text.ends_with('\n');
+    let whole = if truncated { text.rfind('\n').map_or("", |end| &text[..end]) } else { text.as_str() };
+    let mut lines = whole.lines();
+    let header = lines.next().ok_or_else(|| fault(1, TextErrorKind::NoHeader))?;
+    let columns = parse_header(header).map_err(|kind| fault(1, kind))?;
+    let rows = lines
+        .enumerate()
+        .map(|(i, line)| parse_row(line, columns.len()).map_err(|kind| fault(i + 2, kind)))
+        .collect::<Result<_, _>>()?;
+    Ok(History { columns, rows, truncated })
+}
+
+fn parse_header(line: &str) -> Result<Vec<Column>, TextErrorKind> {
+    line.split(',')
+        .map(|header| Column::parse(header).ok_or_else(|| TextErrorKind::BadHeader { header: header.to_owned() }))
+        .collect()
+}
+
+fn parse_row(line: &str, columns: usize) -> Result<Vec<f64>, TextErrorKind> {
+    let values: Vec<f64> = line
+        .split(',')
+        .map(|field| match field.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(TextErrorKind::BadNumber { field: field.to_owned() }),
+        })
+        .collect::<Result<_, _>>()?;
+    match values.len() == columns {
+        true => Ok(values),
+        false => Err(TextErrorKind::ValueCount { expected: columns, got: values.len() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ErrorClass;
+    use proptest::prelude::*;
+
+    fn columns() -> Vec<Column> {
+        vec![Column::new("time", "s"), Column::new("force", "N")]
+    }
+
+    #[test]
+    fn rows_are_on_the_disk_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("h.csv");
+        let mut writer = HistoryWriter::create(&path, &columns()).unwrap();
+        writer.row(&[0.5, -1e-9]).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "time [s],force [N]\n0.5,-1e-9\n");
+        writer.row(&[1.0, 3e300]).unwrap();
+        let history = read_history(&path).unwrap();
+        assert_eq!(history.columns, columns());
+        assert_eq!(history.column("force").unwrap(), [-1e-9, 3e300]);
+        assert_eq!(history.column("moment"), None);
+    }
+
+    #[test]
+    fn wrong_values_and_names_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("h.csv");
+        let mut writer = HistoryWriter::create(&path, &columns()).unwrap();
+        let error = writer.row(&[0.0, f64::NAN]).unwrap_err();
+        assert!(matches!(error, IoError::Value(ValueError::NotFinite { index: 1, .. })));
+        assert!(matches!(writer.row(&[0.0]), Err(IoError::Value(ValueError::Count { expected: 2, got: 1 }))));
+        assert_eq!(read_history(&path).unwrap().rows.len(), 0);
+        for name in ["", "a,b", "a [b", "a\nb", " a", "\"a\""] {
+            assert!(HistoryWriter::create(&path, &[Column::new(name, "N")]).is_err(), "{name:?}");
+        }
+        let twice = [Column::new("a", "N"), Column::new("a", "mm")];
+        assert!(matches!(HistoryWriter::create(&path, &twice), Err(IoError::Value(ValueError::DuplicateName { .. }))));
+    }
+
+    #[test]
+    fn a_cut_line_is_left_out_and_a_wrong_one_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("h.csv");
+        std::fs::write(&path, "a [N]\n1.0\n2.").unwrap();
+        let history = read_history(&path).unwrap();
+        assert!(history.truncated);
+        assert_eq!(history.rows, [[1.0]]);
+        for (text, line) in [("", 1), ("a\n", 1), ("a [N]\n1\nx\n", 3), ("a [N]\n1,2\n", 2), ("a [N]\nNaN\n", 2)] {
+            std::fs::write(&path, text).unwrap();
+            let Err(IoError::Text(error)) = read_history(&path) else { panic!("{text:?} was read") };
+            assert_eq!(error.line, line, "{text:?}");
+        }
+        assert_eq!(read_history(&folder.path().join("none")).unwrap_err().class(), ErrorClass::Input);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_told() {
+        let error = HistoryWriter::create(Path::new("/dev/full"), &columns()).unwrap_err();
+        let IoError::Output(OutputError { action: Action::Write, cause: OutputCause::System(system), .. }) = error
+        else {
+            panic!("{error}")
+        };
+        assert_eq!(system.kind(), std::io::ErrorKind::StorageFull);
+    }
+
+    proptest! {
+        #[test]
+        fn every_finite_number_survives(values in prop::collection::vec(any::<f64>(), 1..20)) {
+            let values: Vec<f64> = values.into_iter().filter(|x| x.is_finite()).collect();
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("h.csv");
+            let mut writer = HistoryWriter::create(&path, &[Column::new("x", "-")]).unwrap();
+            for &value in &values {
+                writer.row(&[value]).unwrap();
+            }
+            let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            let back = read_history(&path).unwrap().column("x").unwrap();
+            prop_assert_eq!(bits(&back), bits(&values));
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Files, datasets and rows: the few HDF5 operations the format needs.
+
+use super::{FieldSpec, Precision, Provenance, WriterOptions};
+use crate::error::{Action, IoError, OutputCause, OutputError};
+use hdf5::file::LibraryVersion;
+use hdf5::types::VarLenUnicode;
+use hdf5::{Dataset, File, Group, H5Type};
+use std::fs::{self, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// Largest chunk of a field \[bytes\]; below it, one step is one chunk and is never written twice.
+const MAX_CHUNK: usize = 64 << 20;
+/// Entries per chunk of the small arrays that grow by one entry per step.
+const STEP_CHUNK: usize = 256;
+
+/// Error of the library in the terms of this crate.
+pub(super) fn failure(path: &Path, action: Action) -> impl Fn(hdf5::Error) -> IoError + '_ {
+    move |error| OutputError::new(path, action, cause(&error)).into()
+}
+
+/// What the library says.
+pub(super) fn cause(error: &hdf5::Error) -> OutputCause {
+    OutputCause::Hdf5 { message: error.to_string() }
+}
+
+/// Creates a file, replacing an older one: earliest formats allowed, nothing newer than HDF5 1.10, no file lock.
+pub(super) fn create(path: &Path) -> Result<(File, Room), IoError> {
+    // The system tells a missing folder or a missing permission more clearly than the library does.
+    let room = OpenOptions::new().write(true).create(true).truncate(false).open(path);
+    let room = Room { file: room.map_err(|e| OutputError::new(path, Action::Create, e))? };
+    let mut builder = File::with_options();
+    builder.with_fapl(|p| p.libver_bounds(LibraryVersion::Earliest, LibraryVersion::V110).file_locking(false));
+    let file = builder.create(path).map_err(failure(path, Action::Create))?;
+    Ok((file, room))
+}
+
+/// Room on the disk behind the content of a file.
+///
+/// The library writes its tables even when the data they refer to did not fit, which spoils the whole file. So a step
+/// is begun only when zeros in its place could be written; what is behind the content does not disturb readers.
+pub(super) struct Room {
+    file: fs::File,
+}
+
+impl Room {
+    /// Makes sure that `needed` bytes behind the first `used` ones are on the disk.
+    pub fn reserve(&self, used: u64, needed: u64) -> io::Result<()> {
+        let length = self.file.metadata()?.len();
+        let target = used.saturating_add(needed);
+        let mut file = &self.file;
+        let filled = file.seek(SeekFrom::Start(length)).and_then(|_| {
+            let missing = target.saturating_sub(length);
+            io::copy(&mut io::repeat(0).take(missing), &mut file)
+        });
+        filled.map(|_| ()).inspect_err(|_| {
+            // A part of the room is of no use to anybody.
+            let _ = self.file.set_len(length);
+        })
+    }
+
+    /// Gives back what is behind the first `used` bytes.
+    pub fn trim(&self, used: u64) -> io::Result<()> {
+        if used > 0 && used < self.file.metadata()?.len() { self.file.set_len(used) } else { Ok(()) }
+    }
+}
+
+/// Opens a file for reading, without a lock.
+pub(super) fn open(path: &Path) -> hdf5::Result<File> {
+    let mut builder = File::with_options();
+    builder.with_fapl(|p| p.file_locking(false));
+    builder.open(path)
+}
+
+/// Writes an array once, uncompressed.
+pub(super) fn put_array<T: H5Type>(group: &Group, name: &str, values: &[T]) -> hdf5::Result<()> {
+    group.new_dataset::<T>().shape(values.len()).create(name)?.write_raw(values)
+}
+
+/// Writes an array once, compressed.
+pub(super) fn put_compressed<T: H5Type>(
+    group: &Group,
+    name: &str,
+    values: &[T],
+    deflate: Option<u8>,
+) -> hdf5::Result<()> {
+    let mut builder = group.new_dataset::<T>();
+    if !values.is_empty() {
+        builder = builder.chunk(values.len().min(MAX_CHUNK / size_of::<T>().max(1)));
+        builder = compress(builder, deflate);
+    }
+    builder.shape(values.len()).create(name)?.write_raw(values)
+}
+
+fn compress(builder: hdf5::DatasetBuilderEmpty, deflate: Option<u8>) -> hdf5::DatasetBuilderEmpty {
+    match deflate {
+        // Shuffled bytes compress better: exponents of neighbouring values are alike.
+        Some(level) => builder.shuffle().deflate(level),
+        None => builder,
+    }
+}
+
+/// Creates the group `/subrope` with its texts.
+pub(super) fn put_texts(file: &File, texts: &Provenance) -> hdf5::Result<()> {
+    let group = file.create_group("subrope")?;
+    for (name, text) in texts {
+        let text: VarLenUnicode = text.parse().map_err(|e| hdf5::Error::Internal(format!("{e}")))?;
+        group.new_dataset::<VarLenUnicode>().create(name.as_str())?.write_scalar(&text)?;
+    }
+    Ok(())
+}
+
+/// An empty array that grows by one entry per step.
+pub(super) fn growing<T: H5Type>(group: &Group, name: &str) -> hdf5::Result<Dataset> {
+    group.new_dataset::<T>().chunk(STEP_CHUNK).shape(0..).create(name)
+}
+
+/// Appends the entry of step `step`.
+pub(super) fn push<T: H5Type>(dataset: &Dataset, step: usize, value: T) -> hdf5::Result<()> {
+    dataset.resize(step + 1)?;
+    dataset.write_slice(&[value], step..step + 1)
+}
+
+/// An array of tuples that grows by one step at a time.
+pub(super) struct Rows {
+    dataset: Dataset,
+    tuples: usize,
+    components: usize,
+    precision: Precision,
+}
+
+impl Rows {
+    /// Creates the array without a step. Scalars are one-dimensional, everything else is (tuples, components).
+    pub fn create(group: &Group, spec: &FieldSpec, tuples: usize, options: WriterOptions) -> hdf5::Result<Self> {
+        let dataset = match options.precision {
+            Precision::F32 => Self::dataset::<f32>(group, spec, tuples, options.deflate)?,
+            Precision::F64 => Self::dataset::<f64>(group, spec, tuples, options.deflate)?,
+        };
+        Ok(Self { dataset, tuples, components: spec.components, precision: options.precision })
+    }
+
+    fn dataset<T: H5Type>(
+        group: &Group,
+        spec: &FieldSpec,
+        tuples: usize,
+        deflate: Option<u8>,
+    ) -> hdf5::Result<Dataset> {
+        let rows = tuples.clamp(1, (MAX_CHUNK / (spec.components * size_of::<T>())).max(1));
+        let builder = compress(group.new_dataset::<T>(), deflate);
+        let name = spec.name.as_str();
+        match spec.components {
+            1 => builder.chunk(rows).shape(0..).create(name),
+            n => builder.chunk((rows, n)).shape((0.., n)).create(name),
+        }
+    }
+
+    /// Tuples per step.
+    pub const fn tuples(&self) -> usize {
+        self.tuples
+    }
+
+    /// Bytes of one step without compression.
+    pub const fn bytes(&self) -> u64 {
+        let bytes = match self.precision {
+            Precision::F32 => size_of::<f32>(),
+            Precision::F64 => size_of::<f64>(),
+        };
+        (self.tuples * self.components * bytes) as u64
+    }
+
+    /// Appends one step after `steps` earlier ones.
+    pub fn append(&self, steps: usize, values: &[f64]) -> hdf5::Result<()> {
+        match self.precision {
+            Precision::F32 => self.append_as(steps, values.iter().map(|&x| x as f32)),
+            Precision::F64 => self.append_as(steps, values.iter().copied()),
+        }
+    }
+
+    fn append_as<T: H5Type + Copy>(&self, steps: usize, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
+        let (begin, end) = (steps * self.tuples, (steps + 1) * self.tuples);
+        if self.components == 1 {
+            self.dataset.resize(end)?;
+            let values: Vec<T> = values.collect();
+            return self.dataset.write_slice(&values, begin..end);
+        }
+        self.dataset.resize((end, self.components))?;
+        write_rows(&self.dataset, begin..end, values)
+    }
+}
+
+/// Writes rows of a two-dimensional array, which already has them.
+pub(super) fn write_rows<T: H5Type + Copy>(
+    dataset: &Dataset,
+    rows: std::ops::Range<usize>,
+    values: impl Iterator<Item = T>,
+) -> hdf5::Result<()> {
+    // Reading rows that were never written costs no disk access and gives a buffer of the right shape.
+    let mut block = dataset.read_slice_2d::<T, _>((rows.clone(), ..))?;
+    block.iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
+    dataset.write_slice(&block, (rows, ..))
+}

@@ -1,0 +1,96 @@
+//! What each command does.
+
+use std::path::Path;
+
+use super::arguments::Command;
+use super::output::{print, write};
+use super::terminal::Terminal;
+use super::{interrupt, templates};
+use crate::model::RopeModel;
+use crate::run::RunOptions;
+use crate::scene::{Scene, SceneFile};
+use crate::{Error, mesh_file, point};
+
+/// Runs a command.
+pub(super) fn run(command: Command) -> Result<(), Error> {
+    match command {
+        Command::New { list: true, .. } | Command::New { folder: None, .. } => print(templates::list().as_bytes()),
+        Command::New { folder: Some(folder), template, .. } => {
+            print(templates::write(&folder, &template)?.as_bytes())
+        }
+        Command::Check { scene } => check(&scene),
+        Command::Run { scene, out, threads } => run_scene(&scene, out.as_deref(), threads.map(usize::from)),
+        Command::Point { file, output, differences } => run_point(&file, output.as_deref(), differences),
+        Command::Mesh { scene, output } => mesh_file::write_mesh(&SceneFile::load(&scene)?, &output),
+        Command::Schema { point } => schema(point),
+    }
+}
+
+fn check(path: &Path) -> Result<(), Error> {
+    let file = SceneFile::load(path)?;
+    print(summary(&file).as_bytes())?;
+    let model = RopeModel::new(&file, None)?;
+    let mut text = String::new();
+    for ignored in &model.ignored {
+        text += &format!("  note     {}:{}: *{} is not read\n", ignored.file.display(), ignored.line, ignored.keyword);
+    }
+    let (nodes, elements) = (model.mesh.mesh.point_count(), model.mesh.mesh.cell_count());
+    text += &format!("  model    {nodes} nodes, {elements} elements: ready to run\n");
+    print(text.as_bytes())
+}
+
+/// What a scene holds, in a few lines.
+fn summary(file: &SceneFile) -> String {
+    let Scene { title, strand, law, element, end, constraint, step, .. } = &file.scene;
+    let mesh = match (strand, &file.deck) {
+        (Some(strand), _) => {
+            let mesh = &strand.mesh;
+            format!("{} hexahedra", (mesh.core * mesh.core + 4 * mesh.core * mesh.rings) * mesh.layers)
+        }
+        (None, Some(deck)) => format!("deck {}", deck.display()),
+        (None, None) => "none".to_owned(),
+    };
+    let steps: Vec<_> = step.iter().map(|s| s.name.as_str()).collect();
+    format!(
+        "{}: {title}\n  mesh     {mesh}, {}\n  law      {}\n  boundary {} reference points, {} constraints\n  \
+         steps    {}\n  results  {}\n  sha256   {}\n",
+        file.path.display(),
+        element.formulation.word(),
+        law.word(),
+        end.len(),
+        constraint.len(),
+        steps.join(", "),
+        file.output_folder().display(),
+        file.hash
+    )
+}
+
+fn run_scene(path: &Path, out: Option<&Path>, threads: Option<usize>) -> Result<(), Error> {
+    let stop = interrupt::flag();
+    let options = RunOptions { folder: out, threads, interrupt: Some(&stop) };
+    let outcome = crate::run::run_scene(path, options, &mut Terminal::new())?;
+    print(format!("results in {}\n", outcome.files.folder.display()).as_bytes())
+}
+
+fn run_point(path: &Path, output: Option<&Path>, differences: bool) -> Result<(), Error> {
+    let computed = point::compute(&path.display().to_string(), &point::load(path)?, differences)?;
+    let ends_with = |p: &Path, ending: &str| p.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    let table = output.map_or_else(|| ends_with(path, "toml"), |o| ends_with(o, "csv"));
+    let text = if table {
+        point::to_csv(&computed).into_bytes()
+    } else {
+        point::to_json(&computed).map_err(|error| Error::Output {
+            path: output.unwrap_or(Path::new("standard output")).to_owned(),
+            source: error.into(),
+        })?
+    };
+    match output {
+        Some(output) => write(output, &text),
+        None => print(&text),
+    }
+}
+
+fn schema(point: bool) -> Result<(), Error> {
+    let schema = if point { point::PathScene::schema() } else { Scene::schema() };
+    print(format!("{schema:#}\n").as_bytes())
+}

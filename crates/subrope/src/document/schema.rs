@@ -1,0 +1,24 @@
+//! JSON schemas of the types that documents become.
+
+use schemars::JsonSchema;
+use serde_json::Value;
+
+/// The JSON schema (draft 2020-12) of a type; descriptions are the documentation of its fields, with their units.
+#[must_use]
+pub fn schema_of<T: JsonSchema>() -> Value {
+    let mut schema = schemars::schema_for!(T).to_value();
+    unescape(&mut schema);
+    schema
+}
+
+/// Documentation escapes brackets, a schema does not.
+fn unescape(value: &mut Value) {
+    match value {
+        Value::Object(map) => map.iter_mut().for_each(|(key, entry)| match entry {
+            Value::String(text) if key == "description" => *text = text.replace("\\[", "[").replace("\\]", "]"),
+            other => unescape(other),
+        }),
+        Value::Array(items) => items.iter_mut().for_each(unescape),
+        _ => {}
+    }
+}

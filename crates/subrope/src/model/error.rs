@@ -1,0 +1,101 @@
+//! Why a scene makes no model.
+
+use subrope_fem::FemError;
+use subrope_geometry::GeometryError;
+use subrope_io::IoError;
+use subrope_material::LawError;
+
+/// Why a scene makes no model.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The mesh cannot be made or is not sound.
+    #[error("mesh: {0}")]
+    Geometry(#[from] GeometryError),
+    /// The deck cannot be read.
+    #[error(transparent)]
+    Deck(#[from] IoError),
+    /// A parameter of the law is impossible.
+    #[error("law: {0}")]
+    Law(#[from] LawError),
+    /// The kernel refuses the model.
+    #[error("{0}")]
+    Fem(Box<FemError>),
+    /// A set that does not exist.
+    #[error("there is no {kind} \"{name}\"; there are: {}", available.join(", "))]
+    UnknownSet {
+        /// Node set, surface, reference point.
+        kind: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        available: Vec<String>,
+    },
+    /// Elements without a fibre direction.
+    #[error(
+        "{count} element(s) of the deck have no orientation (the first is element {first}): give them a *SOLID SECTION \
+         with ORIENTATION, or say fibres = {{ helix = {{ .. }} }} in [deck]"
+    )]
+    MissingFibres {
+        /// Label of the first.
+        first: u64,
+        /// How many.
+        count: usize,
+    },
+    /// The element does not fit the mesh.
+    #[error("formulation \"{formulation}\" needs bricks of {needed} nodes, the mesh has {found}")]
+    WrongElement {
+        /// Formulation asked for.
+        formulation: &'static str,
+        /// Nodes it needs.
+        needed: usize,
+        /// Nodes of the mesh.
+        found: usize,
+    },
+    /// An averaged elongation without a fibre term.
+    #[error("formulation \"hex8_mean_elongation\" averages the fibre term of a law, and law \"{law}\" has none")]
+    NoFibreTerm {
+        /// The law.
+        law: &'static str,
+    },
+    /// The normal of a section free in radius is not defined.
+    #[error("the nodes of section \"{name}\" do not span a plane, so that they have no radius")]
+    NoSectionNormal {
+        /// Reference point.
+        name: String,
+    },
+    /// A moment as a load.
+    #[error("step \"{step}\": a moment on reference point \"{point}\" is not available as a load; prescribe the rotation and read the moment in history.csv")]
+    MomentLoad {
+        /// Step.
+        step: String,
+        /// Reference point.
+        point: String,
+    },
+    /// A component prescribed on nodes that a reference point carries.
+    #[error("constraint \"{constraint}\": node {node} is carried by a reference point; prescribe the motion of that instead")]
+    ConstrainedSectionNode {
+        /// Constraint.
+        constraint: String,
+        /// Label of the node.
+        node: u64,
+    },
+    /// A motion prescribed twice.
+    #[error("step \"{step}\": component {component} of node {node} is prescribed by two constraints")]
+    PrescribedTwice {
+        /// Step.
+        step: String,
+        /// Component.
+        component: &'static str,
+        /// Label of the node.
+        node: u64,
+    },
+    /// More memory than there is.
+    #[error("the model would need about {needed_mb} MB, and {available_mb} MB are available: take a coarser mesh")]
+    TooLarge {
+        /// Estimate.
+        needed_mb: u64,
+        /// Free memory.
+        available_mb: u64,
+    },
+}

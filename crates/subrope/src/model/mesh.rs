@@ -1,0 +1,210 @@
+//! The mesh of a scene with its fibre frames, generated or from a deck.
+
+use nalgebra::{Matrix3, Vector3};
+use subrope_geometry::{
+    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames,
+    Section, SectionArea, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
+};
+use subrope_io::{Ignored, read_deck};
+
+use super::ModelError;
+use crate::scene::{self, Deck, End, Fibres, Formulation, Scene};
+
+/// Mesh, fibre frames and what they were made from.
+#[derive(Debug)]
+pub struct MeshModel {
+    /// The mesh with its sets.
+    pub mesh: Mesh,
+    /// Fibre frame of every integration point, element by element; columns e1 e2 e3.
+    pub frames: Vec<Matrix3<f64>>,
+    /// The generated strand, if it is one.
+    pub strand: Option<Strand>,
+}
+
+impl MeshModel {
+    /// Makes or reads the mesh of a scene.
+    ///
+    /// # Errors
+    /// [`ModelError::Geometry`], [`ModelError::Deck`], [`ModelError::MissingFibres`], [`ModelError::WrongElement`].
+    pub fn new(scene: &Scene, deck: Option<&std::path::Path>) -> Result<(Self, Vec<Ignored>), ModelError> {
+        let kind = cell_kind(scene.element.formulation);
+        let (model, ignored) = match (&scene.strand, &scene.deck, deck) {
+            (Some(strand), _, _) => (Self::generate(strand, kind)?, Vec::new()),
+            (None, Some(entry), Some(path)) => Self::read(entry, path)?,
+            _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
+        };
+        let found = model.mesh.kind.nodes();
+        if model.mesh.kind != kind {
+            let formulation = scene.element.formulation.word();
+            return Err(ModelError::WrongElement { formulation, needed: kind.nodes(), found });
+        }
+        Ok((model, ignored))
+    }
+
+    fn generate(entry: &scene::Strand, kind: CellKind) -> Result<Self, ModelError> {
+        let strand = strand_of(entry, kind)?;
+        let mut mesh = strand.mesh()?;
+        add_sets(&mut mesh);
+        let frames = fibre_frames(&mesh, &strand.fibres())?;
+        Ok(Self { mesh, frames, strand: Some(strand) })
+    }
+
+    fn read(entry: &Deck, path: &std::path::Path) -> Result<(Self, Vec<Ignored>), ModelError> {
+        let deck = read_deck(path)?;
+        let mut mesh = deck.mesh;
+        mesh.validate()?;
+        quality::check_orientation(&mesh)?;
+        let frames = match &entry.fibres {
+            Fibres::Deck => fibre_frames(&mesh, &per_cell(&mesh, &deck.frames)?)?,
+            Fibres::Parallel(direction) => fibre_frames(&mesh, &Parallel::new(frame_along(direction)?)?)?,
+            Fibres::Helix(helix) => fibre_frames(&mesh, &helical(helix)?)?,
+        };
+        rename_sets(&mut mesh, entry)?;
+        Ok((Self { mesh, frames, strand: None }, deck.ignored))
+    }
+
+    /// A node set by name.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownSet`].
+    pub fn node_set(&self, name: &str) -> Result<&[u32], ModelError> {
+        let sets = &self.mesh.node_sets;
+        let found = sets.get(name).or_else(|| sets.get(&name.to_uppercase()));
+        found.map(Vec::as_slice).ok_or_else(|| ModelError::UnknownSet {
+            kind: "node set",
+            name: name.into(),
+            available: sets.keys().cloned().collect(),
+        })
+    }
+
+    /// Mean position of nodes \[mm\].
+    #[must_use]
+    pub fn centroid(&self, nodes: &[u32]) -> Vector3<f64> {
+        let Some(&first) = nodes.first() else { return Vector3::zeros() };
+        // Relative to the first node: no digits are lost far from the origin.
+        let origin = self.mesh.points[first as usize];
+        let sum: Vector3<f64> = nodes.iter().map(|&n| self.mesh.points[n as usize] - origin).sum();
+        origin + sum / nodes.len() as f64
+    }
+
+    /// Unit normal of the plane that fits the nodes of a section best.
+    pub(super) fn section_normal(&self, nodes: &[u32], end: &End) -> Result<Vector3<f64>, ModelError> {
+        let centre = self.centroid(nodes);
+        let mut spread = Matrix3::zeros();
+        for &n in nodes {
+            let arm = self.mesh.points[n as usize] - centre;
+            spread += arm * arm.transpose();
+        }
+        let eigen = spread.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        let second = eigen.eigenvalues.iter().enumerate().filter(|(i, _)| *i != least).map(|(_, v)| *v);
+        if second.fold(f64::INFINITY, f64::min) <= 1e-12 * eigen.eigenvalues.max() {
+            return Err(ModelError::NoSectionNormal { name: end.name.clone() });
+        }
+        Ok(eigen.eigenvectors.column(least).into_owned())
+    }
+
+    /// Share of volume of every node \[mm^3\].
+    ///
+    /// # Errors
+    /// [`ModelError::Geometry`] for an inverted element.
+    pub fn node_volumes(&self) -> Result<Vec<f64>, ModelError> {
+        let mut out = vec![0.0; self.mesh.point_count()];
+        match self.mesh.kind {
+            CellKind::Hex8 => add_volumes::<Hex8, 8>(&self.mesh, &mut out),
+            CellKind::Hex27 => add_volumes::<Hex27, 27>(&self.mesh, &mut out),
+        }
+        Ok(out)
+    }
+}
+
+fn add_volumes<H: Hexahedron<N>, const N: usize>(mesh: &Mesh, out: &mut [f64]) {
+    for cell in 0..mesh.cell_count() {
+        let Some(x) = mesh.cell_points::<N>(cell) else { continue };
+        let points = H::quadrature().iter().filter_map(|q| Some((q.weight, map_point::<H, N>(&x, q.xi).ok()?)));
+        let volume: f64 = points.map(|(weight, map)| weight * map.determinant).sum();
+        for &node in mesh.cell(cell) {
+            out[node as usize] += volume / N as f64;
+        }
+    }
+}
+
+/// Nodes of the bricks of a formulation.
+fn cell_kind(formulation: Formulation) -> CellKind {
+    match formulation {
+        Formulation::Hex27 => CellKind::Hex27,
+        _ => CellKind::Hex8,
+    }
+}
+
+fn strand_of(entry: &scene::Strand, kind: CellKind) -> Result<Strand, ModelError> {
+    Ok(Strand {
+        radius: entry.radius,
+        length: entry.length,
+        layers: entry.mesh.layers,
+        kind,
+        section: Section {
+            core_cells: entry.mesh.core,
+            rings: entry.mesh.rings,
+            core_fraction: entry.mesh.core_fraction,
+            area: match entry.mesh.area {
+                scene::SectionArea::Exact => SectionArea::Exact,
+                scene::SectionArea::Inscribed => SectionArea::Inscribed,
+            },
+            ..Section::default()
+        },
+        lay: Lay::from_rate(entry.surface_tangent() / entry.radius)?,
+        origin: match entry.origin {
+            scene::Origin::Middle => StrandOrigin::Middle,
+            scene::Origin::Bottom => StrandOrigin::Bottom,
+        },
+        lines: match entry.mesh.lines {
+            scene::MeshLines::Axis => MeshLines::Axis,
+            scene::MeshLines::Yarns => MeshLines::Yarns,
+        },
+        ..Strand::default()
+    })
+}
+
+/// The sets that a scene may name on a generated strand.
+fn add_sets(mesh: &mut Mesh) {
+    if let Some(lateral) = mesh.node_sets.get(strand::sets::SURFACE_NODES).cloned() {
+        mesh.node_sets.insert(strand::sets::LATERAL.into(), lateral);
+    }
+    let all = (0..mesh.point_count() as u32).collect();
+    mesh.node_sets.insert("ALL".into(), all);
+}
+
+fn per_cell(mesh: &Mesh, frames: &[Option<Matrix3<f64>>]) -> Result<PerCellFrames, ModelError> {
+    let missing: Vec<usize> = frames.iter().enumerate().filter(|(_, f)| f.is_none()).map(|(e, _)| e).collect();
+    match missing.first() {
+        Some(&first) => Err(ModelError::MissingFibres { first: mesh.cell_label(first), count: missing.len() }),
+        None => Ok(PerCellFrames::new(frames.iter().copied().flatten().collect())?),
+    }
+}
+
+fn frame_along(direction: &[f64; 3]) -> Result<Matrix3<f64>, ModelError> {
+    let fibre = Vector3::from(*direction);
+    let second = Vector3::ith(fibre.iamin(), 1.0);
+    Ok(frame_from_directions(&fibre, &second)?)
+}
+
+fn helical(entry: &scene::HelixFibres) -> Result<HelicalFibres, ModelError> {
+    let axis = Axis::new(Vector3::from(entry.point), Vector3::from(entry.axis))?;
+    Ok(HelicalFibres::new(axis, Lay::from_rate(entry.tangent_per_radius())?))
+}
+
+fn rename_sets(mesh: &mut Mesh, entry: &Deck) -> Result<(), ModelError> {
+    for (new, old) in &entry.sets {
+        let old = old.to_uppercase();
+        let nodes = mesh.node_sets.get(&old).cloned();
+        let faces = mesh.surfaces.get(&old).cloned();
+        if nodes.is_none() && faces.is_none() {
+            let available = mesh.node_sets.keys().chain(mesh.surfaces.keys()).cloned().collect();
+            return Err(ModelError::UnknownSet { kind: "set or surface", name: old, available });
+        }
+        nodes.into_iter().for_each(|n| drop(mesh.node_sets.insert(new.clone(), n)));
+        faces.into_iter().for_each(|f| drop(mesh.surfaces.insert(new.clone(), f)));
+    }
+    Ok(())
+}

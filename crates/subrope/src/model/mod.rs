@@ -1,0 +1,109 @@
+//! From a scene to a finite element model: mesh, fibre frames, law, ends, steps.
+
+mod error;
+mod law;
+mod loads;
+mod mesh;
+mod steps;
+
+pub use error::ModelError;
+pub use mesh::MeshModel;
+
+use nalgebra::Vector3;
+use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Step, Viscous};
+use subrope_fem::kinematics::{Kinematics, Section, SectionKind};
+use subrope_fem::linear::SolverOptions;
+use subrope_fem::{Contribution, FemError};
+use subrope_io::Ignored;
+
+use crate::scene::{End, EndKind, LineSearch, Program, Scene, SceneFile};
+
+/// A scene made ready to solve.
+pub struct RopeModel {
+    /// Mesh and fibre frames.
+    pub mesh: MeshModel,
+    /// The model and its state.
+    pub analysis: Analysis,
+    /// Its steps.
+    pub steps: Vec<Step>,
+    /// Keywords of a deck that were not read.
+    pub ignored: Vec<Ignored>,
+}
+
+impl RopeModel {
+    /// Builds the model of a scene file.
+    ///
+    /// # Errors
+    /// [`ModelError`]: mesh, sets, law or steps that do not go together.
+    pub fn new(file: &SceneFile, threads: Option<usize>) -> Result<Self, ModelError> {
+        Self::from_scene(&file.scene, file.deck.as_deref(), threads)
+    }
+
+    /// Builds the model of a scene; `deck` is the path of its deck, if it has one.
+    ///
+    /// # Errors
+    /// As [`RopeModel::new`].
+    pub fn from_scene(
+        scene: &Scene,
+        deck: Option<&std::path::Path>,
+        threads: Option<usize>,
+    ) -> Result<Self, ModelError> {
+        let (mesh, ignored) = MeshModel::new(scene, deck)?;
+        let solid = law::solid(&mesh, &scene.law, scene.element.formulation)?;
+        let kinematics = kinematics(scene, &mesh)?;
+        let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
+        if let Some(stabilisation) = &scene.solver.stabilisation {
+            contributions.push(Box::new(Viscous::new(stabilisation.viscosity, &mesh.node_volumes()?)));
+        }
+        let steps = steps::steps(scene, &Program::new(scene), &mesh, &kinematics)?;
+        let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
+        let model = Model { kinematics, contributions };
+        Ok(Self { mesh, analysis: Analysis::new(model, newton(scene), SolverOptions::default(), threads), steps, ignored })
+    }
+}
+
+fn default_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+fn newton(scene: &Scene) -> NewtonOptions {
+    let solver = &scene.solver;
+    NewtonOptions {
+        force_tolerance: solver.residual_tolerance,
+        energy_tolerance: solver.energy_tolerance,
+        max_iterations: solver.max_iterations,
+        line_search: solver.line_search == LineSearch::Auto,
+        extrapolate: solver.extrapolate,
+        growth: solver.growth,
+        cutback: solver.cutback,
+        temperature: scene.temperature,
+        ..NewtonOptions::default()
+    }
+}
+
+/// Ties the ends of a scene to their reference points.
+fn kinematics(scene: &Scene, mesh: &MeshModel) -> Result<Kinematics, ModelError> {
+    let sections = scene.end.iter().map(|end| section(end, mesh)).collect::<Result<Vec<_>, _>>()?;
+    Ok(Kinematics::new(mesh.mesh.points.clone(), sections)?)
+}
+
+fn section(end: &End, mesh: &MeshModel) -> Result<Section, ModelError> {
+    let nodes = mesh.node_set(end.set())?.to_vec();
+    let centroid = mesh.centroid(&nodes);
+    let position = end.point.map_or(centroid, Vector3::from);
+    let kind = match end.kind {
+        EndKind::Rigid => SectionKind::Rigid,
+        EndKind::Radial => SectionKind::Radial,
+    };
+    let axis = match kind {
+        SectionKind::Rigid => Vector3::z(),
+        SectionKind::Radial => mesh.section_normal(&nodes, end)?,
+    };
+    Ok(Section { name: end.name.clone(), position, axis, nodes, kind })
+}
+
+impl From<FemError> for ModelError {
+    fn from(error: FemError) -> Self {
+        Self::Fem(Box::new(error))
+    }
+}

@@ -1,0 +1,109 @@
+//! The steps of a program as prescribed coordinates and dead loads.
+
+use std::sync::Arc;
+
+use subrope_fem::analysis::{Increments, Prescription, Step, StepLoad};
+use subrope_fem::kinematics::{Kinematics, NodeRule};
+
+use super::{MeshModel, ModelError, loads};
+use crate::scene::{Incrementation, Motion, MotionPath, MotionTarget, Program, ProgramStep, Scene};
+
+/// Steps that the kernel runs.
+pub(super) fn steps(
+    scene: &Scene,
+    program: &Program,
+    mesh: &MeshModel,
+    kinematics: &Kinematics,
+) -> Result<Vec<Step>, ModelError> {
+    program.steps.iter().map(|step| one(scene, step, mesh, kinematics)).collect()
+}
+
+fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinematics) -> Result<Step, ModelError> {
+    let mut prescriptions: Vec<Prescription> = Vec::new();
+    for motion in &step.motions {
+        for coordinate in coordinates(scene, motion, mesh, kinematics)? {
+            if let Some(path) = path(&motion.path) {
+                prescriptions.push(Prescription { coordinate, path });
+            }
+        }
+    }
+    reject_twice(&step.name, &mut prescriptions, mesh, kinematics)?;
+    let mut loads = Vec::new();
+    for load in &step.loads {
+        let path = load.path.clone();
+        loads.push(StepLoad {
+            load: loads::unit_load(&step.name, &load.target, load.component, mesh, kinematics)?,
+            path: Arc::new(move |fraction, _| path.value(fraction, 0.0)),
+        });
+    }
+    let increments = match step.increments {
+        Incrementation::Fixed { count } => Increments::Fixed(count),
+        Incrementation::Automatic { initial, minimum, maximum, max_count } => {
+            Increments::Automatic { initial, minimum, maximum, max_count }
+        }
+    };
+    Ok(Step { name: step.name.clone(), duration: step.duration, prescriptions, loads, increments })
+}
+
+/// The value of a motion over the step; `None` when it is free.
+fn path(motion: &MotionPath) -> Option<subrope_fem::analysis::Path> {
+    match motion {
+        MotionPath::Free => None,
+        other => {
+            let other = other.clone();
+            Some(Arc::new(move |fraction, reached| other.value(fraction, reached).unwrap_or(reached)))
+        }
+    }
+}
+
+/// Index of a reference point.
+pub(super) fn point(kinematics: &Kinematics, name: &str) -> Result<usize, ModelError> {
+    kinematics.point_index(name).ok_or_else(|| ModelError::UnknownSet {
+        kind: "reference point",
+        name: name.into(),
+        available: kinematics.points().iter().map(|p| p.name.clone()).collect(),
+    })
+}
+
+fn coordinates(
+    scene: &Scene,
+    motion: &Motion,
+    mesh: &MeshModel,
+    kinematics: &Kinematics,
+) -> Result<Vec<u32>, ModelError> {
+    let component = motion.component.index() as u32;
+    match &motion.target {
+        MotionTarget::Point(name) => Ok(vec![kinematics.points()[point(kinematics, name)?].first + component]),
+        MotionTarget::Constraint(name) => {
+            let Some(constraint) = scene.constraint.iter().find(|c| &c.name == name) else { return Ok(Vec::new()) };
+            mesh.node_set(&constraint.set)?
+                .iter()
+                .map(|&node| match kinematics.rules()[node as usize] {
+                    NodeRule::Free { first } => Ok(first + component),
+                    NodeRule::Tied { .. } => Err(ModelError::ConstrainedSectionNode {
+                        constraint: name.clone(),
+                        node: mesh.mesh.point_label(node as usize),
+                    }),
+                })
+                .collect()
+        }
+    }
+}
+
+fn reject_twice(
+    step: &str,
+    prescriptions: &mut [Prescription],
+    mesh: &MeshModel,
+    kinematics: &Kinematics,
+) -> Result<(), ModelError> {
+    prescriptions.sort_by_key(|p| p.coordinate);
+    let Some(pair) = prescriptions.windows(2).find(|w| w[0].coordinate == w[1].coordinate) else { return Ok(()) };
+    let twice = pair[0].coordinate;
+    let owner = kinematics.rules().iter().position(|r| matches!(r, NodeRule::Free { first } if (*first..*first + 3).contains(&twice)));
+    let node = owner.map_or(0, |n| mesh.mesh.point_label(n));
+    let component = ["ux", "uy", "uz"][owner.map_or(0, |n| match kinematics.rules()[n] {
+        NodeRule::Free { first } => (twice - first) as usize,
+        NodeRule::Tied { .. } => 0,
+    })];
+    Err(ModelError::PrescribedTwice { step: step.into(), component, node })
+}

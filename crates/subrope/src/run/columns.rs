@@ -1,0 +1,72 @@
+//! Columns of the history: one row per converged increment.
+
+use subrope_fem::analysis::{Analysis, IncrementRecord};
+use subrope_io::Column;
+
+const MOTIONS: [(&str, &str); 6] =
+    [("ux", "mm"), ("uy", "mm"), ("uz", "mm"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
+const REACTIONS: [(&str, &str); 6] =
+    [("fx", "N"), ("fy", "N"), ("fz", "N"), ("mx", "N mm"), ("my", "N mm"), ("mz", "N mm")];
+
+const HEAD: [(&str, &str); 5] =
+    [("time", "s"), ("step", "-"), ("increment", "-"), ("step_fraction", "-"), ("increment_length", "-")];
+const ENERGIES: [(&str, &str); 8] = [
+    ("external_work", "mJ"),
+    ("stored_energy", "mJ"),
+    ("dissipated_transverse", "mJ"),
+    ("dissipated_longitudinal", "mJ"),
+    ("dissipated_transverse_midpoint", "mJ"),
+    ("dissipated_longitudinal_midpoint", "mJ"),
+    ("stabilising_work", "mJ"),
+    ("energy_error", "-"),
+];
+const COUNTS: [(&str, &str); 4] =
+    [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
+
+/// Headers, with units.
+pub fn columns(analysis: &Analysis) -> Vec<Column> {
+    let mut out: Vec<Column> = HEAD.iter().map(|(n, u)| Column::new(*n, *u)).collect();
+    for point in analysis.model().kinematics.points() {
+        for (name, unit) in MOTIONS.iter().chain(&REACTIONS) {
+            out.push(Column::new(format!("{}_{name}", point.name), *unit));
+        }
+    }
+    out.extend(ENERGIES.iter().chain(&COUNTS).map(|(n, u)| Column::new(*n, *u)));
+    out
+}
+
+/// The row of an increment. `cutbacks` counts since the row before. The sign of reactions: what acts on the model.
+pub fn row(analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Vec<f64> {
+    let mut out = vec![
+        analysis.time(),
+        record.step_index as f64,
+        record.increment as f64,
+        record.fraction,
+        record.length,
+    ];
+    let kinematics = &analysis.model().kinematics;
+    for point in 0..kinematics.points().len() {
+        let (u, r) = kinematics.point_motion(point, analysis.coordinates());
+        let (force, moment) = analysis.point_reaction(point);
+        for vector in [u, r, force, moment] {
+            out.extend_from_slice(vector.as_slice());
+        }
+    }
+    let totals = analysis.totals();
+    out.extend([
+        totals.external_work,
+        totals.stored,
+        totals.dissipated[0],
+        totals.dissipated[1],
+        totals.dissipated_mid[0],
+        totals.dissipated_mid[1],
+        totals.stabilising,
+        totals.energy_error(),
+        record.iterations as f64,
+        cutbacks as f64,
+        record.residual(),
+        // Unknown for an unsymmetric factorisation.
+        record.negative_pivots.map_or(-1.0, |n| n as f64),
+    ]);
+    out
+}

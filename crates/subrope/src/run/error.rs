@@ -1,0 +1,74 @@
+//! Why a run ended early.
+
+use std::path::PathBuf;
+
+use subrope_fem::FemError;
+use subrope_io::IoError;
+
+use crate::error::ExitCode;
+
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// No equilibrium, or a model that cannot be solved.
+    #[error("{cause}")]
+    Solver {
+        /// What the kernel says.
+        cause: Box<FemError>,
+        /// Folder with the results up to the last converged increment, if there is one.
+        kept: Option<PathBuf>,
+    },
+    /// Results could not be written.
+    #[error(transparent)]
+    Output(#[from] IoError),
+    /// The folder of the results could not be made.
+    #[error("cannot make the folder {}: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+impl RunError {
+    /// The exit code that answers it.
+    #[must_use]
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Solver { cause, .. } => match cause.as_ref() {
+                FemError::IncrementTooShort { .. }
+                | FemError::FixedIncrementFailed { .. }
+                | FemError::TooManyIncrements { .. }
+                | FemError::Interrupted => ExitCode::NotConverged,
+                cause if cause.is_recoverable() => ExitCode::NotConverged,
+                _ => ExitCode::Input,
+            },
+            Self::Output(_) | Self::Folder { .. } => ExitCode::Output,
+        }
+    }
+
+    /// What to try next.
+    #[must_use]
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Solver { cause, .. } => match cause.as_ref() {
+                FemError::IncrementTooShort { .. } => Some(
+                    "the structure may pass a limit point here: allow smaller increments (increments.minimum), more \
+                     iterations (solver.max_iterations), or damp the jump (solver.stabilisation); results up to the last \
+                     converged increment are kept",
+                ),
+                FemError::FixedIncrementFailed { .. } => {
+                    Some("take more increments (increments.fixed), or leave `fixed` out and let the program choose")
+                }
+                FemError::TooManyIncrements { .. } => Some("raise increments.max_count"),
+                FemError::RigidModes { .. } => {
+                    Some("give the part an [[end]] with prescribed motion, or a [[constraint]] on a node set")
+                }
+                _ => None,
+            },
+            Self::Output(_) | Self::Folder { .. } => Some("free some space or choose another folder with --out"),
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! What the bent strand shows, as numbers: where it bends, out of which plane, how oval it gets, and where each sliding
+//! mode dissipates.
+//!
+//! Definitions: curvature = relative rotation of best-fit sections per reference length; ovality = (largest -
+//! smallest)/mean width in the section's plane; centre = dissipation-weighted coordinate towards the tension side over
+//! the radius; 90 % volume = smallest volume fraction that holds 90 % of a mode's dissipation.
+
+use nalgebra::Vector3;
+use serde::Serialize;
+use subrope_fem::analysis::Analysis;
+use subrope_fem::solid::SolidFields;
+use subrope_geometry::Mesh;
+use subrope_material::StateKind;
+
+use super::sections::{SectionShape, rotation_vector, section_shapes};
+
+/// Findings on a bent strand.
+#[derive(Clone, Debug, Serialize)]
+pub struct Findings {
+    /// Mean curvature: rotation of one end against the other over the length \[1/mm\].
+    pub mean_curvature_per_mm: f64,
+    /// Zones of high curvature, one per half of the strand, lowest first.
+    pub curvature_zones: Vec<Zone>,
+    /// Whether the two zones mirror each other: |z1 + z2| (about the middle) over the length \[-\].
+    pub zone_asymmetry: f64,
+    /// Largest displacement of a section's centroid out of the plane of bending \[mm\].
+    pub out_of_plane_mm: f64,
+    /// Largest ovality of a section \[-\].
+    pub largest_ovality: f64,
+    /// Largest shortening: distance of the end centres over the length, less one \[-\].
+    pub approach_mm: f64,
+    /// Transverse sliding; absent when nothing slid.
+    pub transverse: Option<ModeFinding>,
+    /// Longitudinal sliding.
+    pub longitudinal: Option<ModeFinding>,
+    /// Peak density of longitudinal over that of transverse dissipation \[-\].
+    pub peak_ratio: Option<f64>,
+}
+
+/// A zone of high curvature.
+#[derive(Clone, Debug, Serialize)]
+pub struct Zone {
+    /// Reference coordinate from the middle of the strand \[mm\].
+    pub z_mm: f64,
+    /// Its curvature over the mean one \[-\].
+    pub curvature_ratio: f64,
+    /// Ovality of the section there \[-\].
+    pub ovality: f64,
+}
+
+/// Where a sliding mode dissipates.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModeFinding {
+    /// Dissipated in all \[mJ\].
+    pub total_mj: f64,
+    /// Peak density \[mJ/mm^3\].
+    pub peak_mj_per_mm3: f64,
+    /// Reference position of the peak \[mm\].
+    pub peak_at_mm: [f64; 3],
+    /// Centre towards the tension side over the radius \[-\]: positive outside, negative inside of the bend.
+    pub centre_over_radius: f64,
+    /// Coordinate of the peak towards the tension side over the radius \[-\].
+    pub peak_over_radius: f64,
+    /// Smallest fraction of the volume that holds 90 % \[-\].
+    pub volume_of_90_percent: f64,
+}
+
+/// A sliding mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Between rope-yarns across the section.
+    Transverse,
+    /// Along the rope-yarns.
+    Longitudinal,
+}
+
+impl Mode {
+    fn kind(self) -> StateKind {
+        match self {
+            Self::Transverse => StateKind::TransverseDissipation,
+            Self::Longitudinal => StateKind::LongitudinalDissipation,
+        }
+    }
+}
+
+/// Rotation between the ends below which a strand does not count as bent \[rad\].
+const LEAST_BEND: f64 = 1e-6;
+
+impl Findings {
+    /// Findings at the committed state; `None` when the mesh has no sections along z or is not bent.
+    #[must_use]
+    pub fn new(mesh: &Mesh, points: &[Vector3<f64>], analysis: &Analysis) -> Option<Self> {
+        let sections = section_shapes(mesh, analysis.displacement());
+        let (first, last) = (sections.first()?, sections.last()?);
+        if sections.len() < 5 {
+            return None;
+        }
+        let length = last.z - first.z;
+        let curvature = curvatures(&sections);
+        let bend = bend_vector(&sections);
+        let transverse_part = Vector3::new(bend.x, bend.y, 0.0);
+        if transverse_part.norm() < LEAST_BEND {
+            return None;
+        }
+        let axis = transverse_part.normalize();
+        let mean = transverse_part.norm() / length;
+        let middle = 0.5 * (first.z + last.z);
+        let zones = zones(&sections, &curvature, mean, middle);
+        let fields = analysis.model().contributions.iter().find_map(|c| c.fields());
+        let side = Vector3::z().cross(&axis);
+        let radius = mesh_radius(mesh);
+        let mode = |m| fields.and_then(|f| mode_finding(f, points, m, &side, radius));
+        let (transverse, longitudinal) = (mode(Mode::Transverse), mode(Mode::Longitudinal));
+        Some(Self {
+            mean_curvature_per_mm: mean,
+            zone_asymmetry: zones.iter().map(|z| z.z_mm).sum::<f64>().abs() / length,
+            curvature_zones: zones,
+            out_of_plane_mm: sections.iter().map(|s| s.displacement.dot(&axis).abs()).fold(0.0, f64::max),
+            largest_ovality: sections.iter().map(|s| s.ovality).fold(0.0, f64::max),
+            approach_mm: length - (last.centroid - first.centroid).norm(),
+            peak_ratio: match (&transverse, &longitudinal) {
+                (Some(t), Some(l)) if t.peak_mj_per_mm3 > 0.0 => Some(l.peak_mj_per_mm3 / t.peak_mj_per_mm3),
+                _ => None,
+            },
+            transverse,
+            longitudinal,
+        })
+    }
+}
+
+/// Curvature vectors between neighbouring sections, in the frame of the lower one \[1/mm\].
+fn curvatures(sections: &[SectionShape]) -> Vec<(f64, f64)> {
+    sections
+        .windows(2)
+        .map(|pair| {
+            let turn = rotation_vector(&(pair[0].rotation.transpose() * pair[1].rotation));
+            let bend = turn.x.hypot(turn.y);
+            (0.5 * (pair[0].z + pair[1].z), bend / (pair[1].z - pair[0].z))
+        })
+        .collect()
+}
+
+/// Sum of the rotations from section to section \[rad\]: no limit at half a turn.
+fn bend_vector(sections: &[SectionShape]) -> Vector3<f64> {
+    sections
+        .windows(2)
+        .map(|pair| {
+            let spatial = rotation_vector(&(pair[1].rotation * pair[0].rotation.transpose()));
+            // In the plane of bending all increments turn about the same spatial axis.
+            spatial
+        })
+        .sum()
+}
+
+/// The section of highest curvature in each half.
+fn zones(sections: &[SectionShape], curvature: &[(f64, f64)], mean: f64, middle: f64) -> Vec<Zone> {
+    let half = |upper: bool| {
+        let inside = curvature.iter().filter(move |(z, _)| (*z > middle) == upper);
+        let (z, value) = inside.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let near = sections.iter().min_by(|a, b| (a.z - z).abs().total_cmp(&(b.z - z).abs()))?;
+        Some(Zone { z_mm: z - middle, curvature_ratio: value / mean, ovality: near.ovality })
+    };
+    [half(false), half(true)].into_iter().flatten().collect()
+}
+
+fn mesh_radius(mesh: &Mesh) -> f64 {
+    mesh.points.iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max)
+}
+
+fn mode_finding(
+    fields: &dyn SolidFields,
+    points: &[Vector3<f64>],
+    mode: Mode,
+    side: &Vector3<f64>,
+    radius: f64,
+) -> Option<ModeFinding> {
+    let offset = fields.state_variables().iter().find(|v| v.kind == mode.kind())?.offset;
+    let per_element = fields.points_per_element();
+    let mut samples: Vec<(f64, f64, usize)> = Vec::with_capacity(points.len());
+    for element in 0..fields.element_count() {
+        for q in 0..per_element {
+            let (state, volume) = fields.point_state(element, q);
+            samples.push((state[offset], volume, element * per_element + q));
+        }
+    }
+    let total: f64 = samples.iter().map(|(d, v, _)| d * v).sum();
+    if total <= 0.0 {
+        return None;
+    }
+    let centre = samples.iter().map(|(d, v, i)| d * v * points[*i].dot(side)).sum::<f64>() / total;
+    samples.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)));
+    let &(peak, _, at) = samples.first()?;
+    Some(ModeFinding {
+        total_mj: total,
+        peak_mj_per_mm3: peak,
+        peak_at_mm: points[at].into(),
+        centre_over_radius: centre / radius,
+        peak_over_radius: points[at].dot(side) / radius,
+        volume_of_90_percent: volume_fraction(&samples, 0.9 * total),
+    })
+}
+
+/// Fraction of the volume that the densest points need to hold a share of the dissipation.
+fn volume_fraction(densest_first: &[(f64, f64, usize)], share: f64) -> f64 {
+    let volume: f64 = densest_first.iter().map(|(_, v, _)| v).sum();
+    let (mut held, mut used) = (0.0, 0.0);
+    for (density, v, _) in densest_first {
+        if held >= share {
+            break;
+        }
+        held += density * v;
+        used += v;
+    }
+    used / volume
+}

@@ -1,0 +1,73 @@
+//! Running a scene: results on disk while it goes on, a summary at the end.
+
+mod columns;
+mod error;
+mod fields;
+mod findings;
+mod sections;
+mod session;
+mod summary;
+
+pub use error::RunError;
+pub use findings::{Findings, Mode, ModeFinding, Zone};
+pub use sections::{SectionShape, section_shapes};
+pub use summary::{Status, Summary};
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use crate::Error;
+use crate::model::RopeModel;
+use crate::progress::Observer;
+use crate::scene::SceneFile;
+use session::Session;
+
+/// What a run may be told.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RunOptions<'a> {
+    /// Folder of the results; the scene's own when left out.
+    pub folder: Option<&'a Path>,
+    /// Threads; the scene's own when left out.
+    pub threads: Option<usize>,
+    /// Set from elsewhere to stop after the current increment.
+    pub interrupt: Option<&'a AtomicBool>,
+}
+
+/// Files of a run.
+#[derive(Clone, Debug)]
+pub struct RunFiles {
+    /// Folder.
+    pub folder: PathBuf,
+    /// Fields, VTKHDF; absent without the feature `hdf5`.
+    pub results: Option<PathBuf>,
+    /// One row per increment.
+    pub history: PathBuf,
+    /// Numbers at the end.
+    pub summary: PathBuf,
+}
+
+/// What a run gave.
+#[derive(Clone, Debug)]
+pub struct RunOutcome {
+    /// Its files.
+    pub files: RunFiles,
+    /// Its summary, as written.
+    pub summary: Summary,
+}
+
+/// Runs a scene file: `results.vtkhdf`, `history.csv` (both readable while it runs) and `summary.json`.
+///
+/// # Errors
+/// [`Error::Scene`], [`Error::Model`] for what is wrong in the input; [`Error::Run`] when no equilibrium is found (files
+/// hold everything up to the last converged increment) or when output fails.
+pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observer) -> Result<RunOutcome, Error> {
+    let file = SceneFile::load(path)?;
+    let mut model = RopeModel::new(&file, options.threads)?;
+    for ignored in &model.ignored {
+        let place = format!("{}:{}", ignored.file.display(), ignored.line);
+        observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
+    }
+    let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
+    let session = Session::open(&file, &model, &folder)?;
+    session.run(&mut model, options.interrupt, observer)
+}

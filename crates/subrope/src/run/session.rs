@@ -1,0 +1,279 @@
+//! One run with its open files.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use nalgebra::Vector3;
+use subrope_fem::FemError;
+use subrope_fem::analysis::{Analysis, Control, IncrementRecord};
+use subrope_io::{HistoryWriter, IoError, write_json};
+
+use super::summary::{Status, Summary};
+use super::{RunError, RunFiles, RunOutcome, columns};
+use crate::Error;
+use crate::model::RopeModel;
+use crate::progress::{self, Finish, Observer, Outcome, StepStart};
+use crate::scene::SceneFile;
+
+#[cfg(feature = "hdf5")]
+use super::fields::{self, FieldArray, Place};
+#[cfg(feature = "hdf5")]
+use subrope_io::{FieldSpec, Precision, Provenance, ResultWriter, WriterOptions};
+
+/// Files of a run and what it was asked.
+pub struct Session<'a> {
+    file: &'a SceneFile,
+    files: RunFiles,
+    output: Output,
+    started: Instant,
+}
+
+/// Open files.
+struct Output {
+    history: HistoryWriter,
+    #[cfg(feature = "hdf5")]
+    results: ResultWriter,
+    #[cfg(feature = "hdf5")]
+    arrays: Vec<FieldArray>,
+    #[cfg(feature = "hdf5")]
+    every: usize,
+    /// Increments of the current step since the last frame.
+    #[cfg(feature = "hdf5")]
+    waiting: usize,
+}
+
+impl<'a> Session<'a> {
+    /// Makes the folder and opens the files.
+    pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, Error> {
+        std::fs::create_dir_all(folder)
+            .map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
+        let files = RunFiles {
+            folder: folder.to_path_buf(),
+            results: cfg!(feature = "hdf5").then(|| folder.join("results.vtkhdf")),
+            history: folder.join("history.csv"),
+            summary: folder.join("summary.json"),
+        };
+        // A summary of an earlier run must not stand beside new results.
+        match std::fs::remove_file(&files.summary) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                return Err(RunError::Folder { path: files.summary, source }.into());
+            }
+            _ => {}
+        }
+        let output = Output::open(file, model, &files).map_err(RunError::Output)?;
+        Ok(Self { file, files, output, started: Instant::now() })
+    }
+
+    /// Runs all steps.
+    pub fn run(
+        self,
+        model: &mut RopeModel,
+        interrupt: Option<&AtomicBool>,
+        observer: &mut dyn Observer,
+    ) -> Result<RunOutcome, Error> {
+        let Self { file, files, output, started } = self;
+        let count = model.steps.len();
+        let mut watch = Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0 };
+        let mut outcome = Ok(());
+        for (index, step) in model.steps.iter().enumerate() {
+            let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
+            watch.observer.on_step(&start);
+            watch.attempt_start = Instant::now();
+            outcome = model.analysis.run_step(step, &mut watch);
+            if outcome.is_ok() {
+                outcome = watch.end_step(&model.analysis);
+            }
+            if outcome.is_err() {
+                break;
+            }
+        }
+        let failure = watch.failure.take();
+        let interrupted = matches!(outcome, Err(FemError::Interrupted));
+        let closed = watch.output.close(&model.analysis);
+        let status = Status::of(&outcome);
+        let summary = Summary::new(file, model, status, started.elapsed().as_secs_f64());
+        if let Some(error) = failure {
+            return Err(RunError::Output(error).into());
+        }
+        closed.map_err(RunError::Output)?;
+        write_json(&files.summary, &summary).map_err(RunError::Output)?;
+        match outcome {
+            Err(cause) if !interrupted => {
+                let kept = (model.analysis.totals().increments > 0).then(|| files.folder.clone());
+                Err(RunError::Solver { cause: Box::new(cause), kept }.into())
+            }
+            _ => {
+                observer.on_finish(&finish(&model.analysis, started, interrupted));
+                Ok(RunOutcome { files, summary })
+            }
+        }
+    }
+}
+
+fn finish(analysis: &Analysis, started: Instant, interrupted: bool) -> Finish {
+    let totals = analysis.totals();
+    Finish {
+        increments: totals.increments,
+        iterations: totals.iterations,
+        seconds: started.elapsed().as_secs_f64(),
+        interrupted,
+    }
+}
+
+impl Output {
+    #[cfg(feature = "hdf5")]
+    fn open(file: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
+        let scene = &file.scene;
+        let arrays = fields::arrays(&scene.output.fields, &model.analysis);
+        let specs: Vec<FieldSpec> = arrays.iter().map(spec).collect();
+        let provenance: Provenance = [
+            ("version", env!("CARGO_PKG_VERSION").to_string()),
+            ("scene", file.text.clone()),
+            ("scene_hash", file.hash.clone()),
+        ]
+        .map(|(name, text)| (name.to_string(), text))
+        .into();
+        let options = WriterOptions {
+            precision: match scene.output.precision {
+                crate::scene::Precision::F32 => Precision::F32,
+                crate::scene::Precision::F64 => Precision::F64,
+            },
+            deflate: (scene.output.compression > 0).then_some(scene.output.compression),
+        };
+        let path = files.results.clone().unwrap_or_else(|| PathBuf::from("results.vtkhdf"));
+        let mut out = Self {
+            history: HistoryWriter::create(&files.history, &columns::columns(&model.analysis))?,
+            results: ResultWriter::create(&path, &model.mesh.mesh, &specs, &provenance, options)?,
+            arrays,
+            every: scene.output.every,
+            waiting: 0,
+        };
+        out.frame(&model.analysis)?;
+        Ok(out)
+    }
+
+    #[cfg(not(feature = "hdf5"))]
+    fn open(_: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
+        Ok(Self { history: HistoryWriter::create(&files.history, &columns::columns(&model.analysis))? })
+    }
+
+    fn increment(&mut self, analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Result<(), IoError> {
+        self.history.row(&columns::row(analysis, record, cutbacks))?;
+        #[cfg(feature = "hdf5")]
+        {
+            self.waiting += 1;
+            if self.waiting >= self.every {
+                self.frame(analysis)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes what is still waiting.
+    fn end_step(&mut self, analysis: &Analysis) -> Result<(), IoError> {
+        #[cfg(feature = "hdf5")]
+        if self.waiting > 0 {
+            self.frame(analysis)?;
+        }
+        #[cfg(not(feature = "hdf5"))]
+        let _ = analysis;
+        Ok(())
+    }
+
+    #[cfg(feature = "hdf5")]
+    fn frame(&mut self, analysis: &Analysis) -> Result<(), IoError> {
+        self.waiting = 0;
+        // The committed state was evaluated a moment ago: a law that fails here would be at the very edge of its range.
+        let Ok(values) = fields::values(&self.arrays, analysis) else { return Ok(()) };
+        let slices: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
+        self.results.append(analysis.time(), &slices)
+    }
+
+    fn close(mut self, analysis: &Analysis) -> Result<(), IoError> {
+        self.end_step(analysis)?;
+        #[cfg(feature = "hdf5")]
+        self.results.close()?;
+        Ok(())
+    }
+}
+
+#[cfg(feature = "hdf5")]
+fn spec(array: &FieldArray) -> FieldSpec {
+    match array.place {
+        Place::Node => FieldSpec::point(array.name, array.components),
+        Place::Element => FieldSpec::cell(array.name, array.components),
+    }
+}
+
+/// Passes what the kernel tells to the files and to the observer.
+struct Watch<'a> {
+    output: Output,
+    observer: &'a mut dyn Observer,
+    interrupt: Option<&'a AtomicBool>,
+    failure: Option<IoError>,
+    attempt_start: Instant,
+    cutbacks: usize,
+}
+
+impl Watch<'_> {
+    fn keep<T>(&mut self, result: Result<T, IoError>) -> Result<T, FemError> {
+        result.map_err(|error| {
+            let text = error.to_string();
+            self.failure = Some(error);
+            FemError::Observer(text)
+        })
+    }
+
+    fn end_step(&mut self, analysis: &Analysis) -> Result<(), FemError> {
+        let result = self.output.end_step(analysis);
+        self.keep(result)
+    }
+
+    fn tell(&mut self, record: &IncrementRecord, outcome: Outcome) {
+        let seconds = self.attempt_start.elapsed().as_secs_f64();
+        self.attempt_start = Instant::now();
+        self.observer.on_increment(&progress::IncrementRecord {
+            step: record.step_index - 1,
+            increment: record.increment,
+            attempt: record.attempt,
+            outcome,
+            iterations: record.iterations,
+            residual: record.residual(),
+            fraction: record.fraction,
+            size: record.length,
+            time: record.time,
+            seconds,
+        });
+    }
+}
+
+impl subrope_fem::analysis::Observer for Watch<'_> {
+    fn converged(&mut self, analysis: &Analysis, record: &IncrementRecord) -> Result<Control, FemError> {
+        let result = self.output.increment(analysis, record, self.cutbacks);
+        self.cutbacks = 0;
+        self.keep(result)?;
+        self.tell(record, Outcome::Converged);
+        let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        Ok(if stop { Control::Stop } else { Control::Continue })
+    }
+
+    fn failed(&mut self, record: &IncrementRecord, _: &FemError) {
+        self.cutbacks += 1;
+        self.tell(record, Outcome::CutBack);
+    }
+}
+
+/// Reference positions of all integration points \[mm\].
+pub fn integration_points(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
+    use subrope_geometry::{CellKind, Hex8, Hex27, Hexahedron};
+    fn positions<H: Hexahedron<N>, const N: usize>(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
+        let cells = (0..mesh.cell_count()).filter_map(|e| mesh.cell_points::<N>(e));
+        let at = |x: &[Vector3<f64>; N], xi| x.iter().zip(H::shape(xi)).map(|(p, n)| p * n).sum::<Vector3<f64>>();
+        cells.flat_map(|x| H::quadrature().iter().map(move |q| at(&x, q.xi))).collect()
+    }
+    match mesh.kind {
+        CellKind::Hex8 => positions::<Hex8, 8>(mesh),
+        CellKind::Hex27 => positions::<Hex27, 27>(mesh),
+    }
+}

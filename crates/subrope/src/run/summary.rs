@@ -1,0 +1,273 @@
+//! The summary of a run.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use subrope_fem::FemError;
+use subrope_fem::analysis::Phase;
+
+use super::findings::Findings;
+use super::session::integration_points;
+use crate::model::RopeModel;
+use crate::scene::SceneFile;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "state", content = "cause")]
+pub enum Status {
+    /// All steps.
+    Done,
+    /// By the user; results up to then are complete.
+    Interrupted,
+    /// No equilibrium; results up to the last converged increment.
+    NotConverged(String),
+}
+
+impl Status {
+    pub(super) fn of(outcome: &Result<(), FemError>) -> Self {
+        match outcome {
+            Ok(()) => Self::Done,
+            Err(FemError::Interrupted) => Self::Interrupted,
+            Err(cause) => Self::NotConverged(cause.to_string()),
+        }
+    }
+}
+
+/// Numbers of a run; units in the names.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Title of the scene.
+    pub title: String,
+    /// How it ended.
+    pub status: Status,
+    /// Time reached in the scene \[s\].
+    pub time_s: f64,
+    /// Motions and reactions of the reference points.
+    pub reference_points: BTreeMap<String, PointSummary>,
+    /// Energies.
+    pub energies: EnergySummary,
+    /// Findings on a bent strand, where there is one.
+    pub findings: Option<Findings>,
+    /// Sizes.
+    pub size: SizeSummary,
+    /// Counts of increments and iterations.
+    pub counts: CountSummary,
+    /// Wall-clock time per phase \[s\].
+    pub seconds: SecondsSummary,
+    /// Largest resident memory \[MB\].
+    pub peak_memory_mb: Option<f64>,
+    /// Version of the program.
+    pub version: &'static str,
+    /// SHA-256 of the scene and its deck.
+    pub scene_hash: String,
+}
+
+/// A reference point at the end.
+#[derive(Clone, Debug, Serialize)]
+pub struct PointSummary {
+    /// Displacement.
+    pub displacement_mm: [f64; 3],
+    /// Rotation vector.
+    pub rotation_rad: [f64; 3],
+    /// Reaction force.
+    pub force_n: [f64; 3],
+    /// Reaction moment about its current position.
+    pub moment_n_mm: [f64; 3],
+}
+
+/// Energies at the end.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergySummary {
+    /// Work of reactions and loads, trapezoidal rule.
+    pub external_work_mj: f64,
+    /// Stored.
+    pub stored_mj: f64,
+    /// Dissipated by transverse sliding, end values as in the fields.
+    pub dissipated_transverse_mj: f64,
+    /// Dissipated by longitudinal sliding, end values as in the fields.
+    pub dissipated_longitudinal_mj: f64,
+    /// Mid-point values: second order in the increment, used in the balance.
+    pub dissipated_transverse_midpoint_mj: f64,
+    /// Mid-point values: second order in the increment, used in the balance.
+    pub dissipated_longitudinal_midpoint_mj: f64,
+    /// Spent by viscous stabilisation.
+    pub stabilising_mj: f64,
+    /// External work less everything else, over the external work.
+    pub energy_error: f64,
+}
+
+/// Sizes.
+#[derive(Clone, Debug, Serialize)]
+pub struct SizeSummary {
+    /// Elements.
+    pub elements: usize,
+    /// Nodes.
+    pub nodes: usize,
+    /// Unknowns of the last step.
+    pub unknowns: usize,
+    /// Stored entries of the tangent.
+    pub matrix_entries: usize,
+    /// Entries of its factor.
+    pub factor_entries: f64,
+    /// Operations of one factorisation.
+    pub factor_flops: f64,
+    /// Ordering chosen.
+    pub ordering: String,
+    /// Whether the tangent is symmetric.
+    pub symmetric: bool,
+    /// Bytes of state per integration point.
+    pub state_bytes_per_point: usize,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Counts.
+#[derive(Clone, Debug, Serialize)]
+pub struct CountSummary {
+    /// Converged increments.
+    pub increments: usize,
+    /// Newton iterations, those of failed attempts included.
+    pub iterations: usize,
+    /// Failed attempts.
+    pub cutbacks: usize,
+    /// Factorisations.
+    pub factorisations: usize,
+}
+
+/// Wall-clock time.
+#[derive(Clone, Debug, Serialize)]
+pub struct SecondsSummary {
+    /// Everything from opening the files.
+    pub total: f64,
+    /// Pattern, ordering, symbolic factorisation.
+    pub analysis: f64,
+    /// Laws, elements, assembly.
+    pub assembly: f64,
+    /// Factorisation.
+    pub factorisation: f64,
+    /// Solves.
+    pub solution: f64,
+}
+
+impl Summary {
+    pub(super) fn new(file: &SceneFile, model: &RopeModel, status: Status, seconds: f64) -> Self {
+        let analysis = &model.analysis;
+        let mesh = &model.mesh.mesh;
+        Self {
+            title: file.scene.title.clone(),
+            status,
+            time_s: analysis.time(),
+            reference_points: points(model),
+            energies: energies(model),
+            findings: Findings::new(mesh, &integration_points(mesh), analysis),
+            size: sizes(model),
+            counts: counts(model),
+            seconds: times(model, seconds),
+            peak_memory_mb: subrope_io::peak_memory().map(|bytes| bytes as f64 / 1e6),
+            version: env!("CARGO_PKG_VERSION"),
+            scene_hash: file.hash.clone(),
+        }
+    }
+
+    /// One sentence of physics.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let e = &self.energies;
+        let mut parts: Vec<String> = Vec::new();
+        for (name, p) in &self.reference_points {
+            let (force, moment) = (norm(&p.force_n), norm(&p.moment_n_mm));
+            parts.push(format!("{name} carries {} N and {} N mm", number(force), number(moment)));
+        }
+        let slid = e.dissipated_transverse_mj + e.dissipated_longitudinal_mj;
+        let energy = format!(
+            "of {} mJ put in, {} mJ are stored and {} mJ lost to sliding between rope-yarns ({} across, {} along them)",
+            number(e.external_work_mj),
+            number(e.stored_mj),
+            number(slid),
+            number(e.dissipated_transverse_mj),
+            number(e.dissipated_longitudinal_mj),
+        );
+        parts.push(energy);
+        format!("At {} s: {}; energy error {:.1e}.", number(self.time_s), parts.join("; "), e.energy_error)
+    }
+}
+
+/// Four digits that matter.
+fn number(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 6) };
+    format!("{value:.*}", digits as usize)
+}
+
+fn norm(v: &[f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn points(model: &RopeModel) -> BTreeMap<String, PointSummary> {
+    let analysis = &model.analysis;
+    let kinematics = &analysis.model().kinematics;
+    let all = kinematics.points().iter().enumerate().map(|(index, point)| {
+        let (u, r) = kinematics.point_motion(index, analysis.coordinates());
+        let (force, moment) = analysis.point_reaction(index);
+        let summary = PointSummary {
+            displacement_mm: u.into(),
+            rotation_rad: r.into(),
+            force_n: force.into(),
+            moment_n_mm: moment.into(),
+        };
+        (point.name.clone(), summary)
+    });
+    all.collect()
+}
+
+fn energies(model: &RopeModel) -> EnergySummary {
+    let t = model.analysis.totals();
+    EnergySummary {
+        external_work_mj: t.external_work,
+        stored_mj: t.stored,
+        dissipated_transverse_mj: t.dissipated[0],
+        dissipated_longitudinal_mj: t.dissipated[1],
+        dissipated_transverse_midpoint_mj: t.dissipated_mid[0],
+        dissipated_longitudinal_midpoint_mj: t.dissipated_mid[1],
+        stabilising_mj: t.stabilising,
+        energy_error: t.energy_error(),
+    }
+}
+
+fn sizes(model: &RopeModel) -> SizeSummary {
+    let system = model.analysis.system();
+    let report = system.map(subrope_fem::System::analysis);
+    let fields = model.analysis.model().contributions.iter().find_map(|c| c.fields());
+    SizeSummary {
+        elements: model.mesh.mesh.cell_count(),
+        nodes: model.mesh.mesh.point_count(),
+        unknowns: system.map_or(0, |s| s.equations().len()),
+        matrix_entries: system.map_or(0, subrope_fem::System::entries),
+        factor_entries: report.map_or(0.0, |r| r.fill.nonzeros),
+        factor_flops: report.map_or(0.0, |r| r.fill.flops),
+        ordering: report.map_or_else(String::new, |r| r.ordering.name().to_string()),
+        symmetric: system.is_none_or(subrope_fem::System::is_symmetric),
+        state_bytes_per_point: fields.map_or(0, |f| f.state_bytes_per_point()),
+        threads: model.analysis.threads(),
+    }
+}
+
+fn counts(model: &RopeModel) -> CountSummary {
+    let t = model.analysis.totals();
+    CountSummary {
+        increments: t.increments,
+        iterations: t.iterations,
+        cutbacks: t.cutbacks,
+        factorisations: t.factorisations,
+    }
+}
+
+fn times(model: &RopeModel, total: f64) -> SecondsSummary {
+    let phase = |p: Phase| model.analysis.phases().times[p as usize].as_secs_f64();
+    SecondsSummary {
+        total,
+        analysis: phase(Phase::Analysis),
+        assembly: phase(Phase::Assembly),
+        factorisation: phase(Phase::Factorisation),
+        solution: phase(Phase::Solution),
+    }
+}

@@ -1,0 +1,27 @@
+//! Checks of reference points and constraints.
+
+use super::{Checker, top};
+
+impl Checker<'_> {
+    pub(super) fn boundary(&mut self) {
+        let scene = self.scene;
+        self.unique("end", &scene.end.iter().map(|e| e.name.as_str()).collect::<Vec<_>>());
+        self.unique("constraint", &scene.constraint.iter().map(|c| c.name.as_str()).collect::<Vec<_>>());
+        for (index, end) in scene.end.iter().enumerate() {
+            let at = top("end").at(index);
+            let key = if end.set.is_some() { "set" } else { "name" };
+            self.node_set(&at.at(key), end.set());
+            if let Some(other) = scene.end[..index].iter().find(|o| o.set().eq_ignore_ascii_case(end.set())) {
+                let cause = format!("the set \"{}\" is already carried by \"{}\"", end.set(), other.name);
+                self.inconsistent(&at.at(key), cause, "a node follows one reference point only");
+            }
+        }
+        for (index, constraint) in scene.constraint.iter().enumerate() {
+            let at = top("constraint").at(index);
+            self.node_set(&at.at("set"), &constraint.set);
+            if constraint.components.values().iter().all(Option::is_none) {
+                self.inconsistent(&at.at("components"), "the constraint has no component", "for example { uz = 0.0 }");
+            }
+        }
+    }
+}

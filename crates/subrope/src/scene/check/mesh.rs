@@ -1,0 +1,102 @@
+//! Checks of strand, deck and element.
+
+use super::{Checker, top};
+use crate::document::{Location, ProblemKind};
+use crate::scene::{Deck, Fibres, Formulation, HelixFibres, Strand};
+
+impl Checker<'_> {
+    pub(super) fn mesh(&mut self) {
+        let scene = self.scene;
+        match (&scene.strand, &scene.deck) {
+            (Some(_), Some(_)) => {
+                let help = "keep [strand] for a generated mesh or [deck] for one from a file";
+                self.inconsistent(&top("deck"), "a scene has either [strand] or [deck], not both", help);
+            }
+            (None, None) => {
+                let help = "add [strand] (a generated mesh) or [deck] (a mesh from an Abaqus file)";
+                self.inconsistent(&Location::root(), "the scene has no mesh", help);
+            }
+            _ => {}
+        }
+        if let Some(strand) = &scene.strand {
+            self.strand(strand);
+        }
+        if let Some(deck) = &scene.deck {
+            self.deck(deck);
+        }
+        self.formulation();
+    }
+
+    fn strand(&mut self, strand: &Strand) {
+        let at = top("strand");
+        match (strand.surface_angle, strand.pitch) {
+            (Some(_), Some(_)) => {
+                let help = "tan(surface_angle) = 2 pi radius / pitch: give one of the two";
+                self.inconsistent(&at.at("pitch"), "`surface_angle` and `pitch` exclude each other", help);
+            }
+            (None, None) => {
+                let help = "or `pitch` (mm); surface_angle = 0 means straight rope-yarns";
+                self.missing(&at, "surface_angle", help);
+            }
+            _ => {}
+        }
+    }
+
+    fn deck(&mut self, deck: &Deck) {
+        let at = top("deck");
+        match &deck.fibres {
+            Fibres::Deck => {}
+            Fibres::Parallel(direction) => self.direction(&at.at("fibres").at("parallel"), "parallel", *direction),
+            Fibres::Helix(helix) => self.helix(&at.at("fibres").at("helix"), helix),
+        }
+        let Some(names) = self.names.filter(|n| !n.includes) else { return };
+        let known: Vec<String> = names.sets.union(&names.surfaces).cloned().collect();
+        for (alias, name) in &deck.sets {
+            if !known.iter().any(|k| k.eq_ignore_ascii_case(name)) {
+                let kind = ProblemKind::UnknownName {
+                    what: "node set or surface in the deck",
+                    found: name.clone(),
+                    allowed: known.clone(),
+                };
+                self.report(&at.at("sets").at(alias.as_str()), kind, "");
+            }
+        }
+    }
+
+    fn direction(&mut self, at: &Location, key: &str, direction: [f64; 3]) {
+        if direction.iter().all(|c| *c == 0.0) {
+            self.inconsistent(at, format!("`{key}` is a direction and cannot be zero"), "");
+        }
+    }
+
+    fn helix(&mut self, at: &Location, helix: &HelixFibres) {
+        self.direction(&at.at("axis"), "axis", helix.axis);
+        let help = "give either `pitch`, or `angle` and `radius`";
+        match (helix.pitch, helix.angle, helix.radius) {
+            (Some(_), None, None) | (None, Some(_), Some(_)) => {}
+            (None, Some(_), None) => self.missing(at, "radius", help),
+            (None, None, Some(_)) => self.missing(at, "angle", help),
+            (None, None, None) => self.missing(at, "pitch", help),
+            (Some(_), _, _) => {
+                self.inconsistent(&at.at("pitch"), "`pitch` excludes `angle` and `radius`", help);
+            }
+        }
+    }
+
+    fn formulation(&mut self) {
+        let (element, law) = (&self.scene.element, &self.scene.law);
+        if element.formulation != Formulation::Hex8MeanElongation || law.has_fibre_term() {
+            return;
+        }
+        let own = top("element").at("formulation");
+        let at = if self.document.contains(&own) { own } else { top("law").at("kind") };
+        let cause = format!(
+            "the formulation \"{}\" averages a fibre term, and the law \"{}\" has none",
+            element.formulation.word(),
+            law.word()
+        );
+        let help = "choose [element] formulation = \"hex8\", \"hex8_mean_volume\" or \"hex27\"; laws with a fibre term: \
+                    bundle, charmetant, fibre_reinforced";
+        self.inconsistent(&at, cause, help);
+    }
+}

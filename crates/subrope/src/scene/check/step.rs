@@ -1,0 +1,134 @@
+//! Checks of steps: increments, histories, loads.
+
+use super::{Checker, top};
+use crate::document::Location;
+use crate::scene::program::Program;
+use crate::scene::step::{Increments, Step};
+use crate::scene::{Component, LoadTarget, MotionPath, MotionTarget, ProgramStep, Ramp};
+
+impl Checker<'_> {
+    pub(super) fn steps(&mut self) {
+        let scene = self.scene;
+        self.unique("step", &scene.step.iter().map(|s| s.name.as_str()).collect::<Vec<_>>());
+        for (index, step) in scene.step.iter().enumerate() {
+            let at = top("step").at(index);
+            self.increments(&at.at("increments"), &step.increments);
+            self.motions(&at, step);
+            self.loads(&at, step);
+        }
+        // Only a scene without other faults has a program worth looking at.
+        if self.problems.is_empty() {
+            let program = Program::new(scene);
+            for (index, (step, resolved)) in scene.step.iter().zip(&program.steps).enumerate() {
+                self.loaded_components(&top("step").at(index), step, resolved);
+            }
+        }
+    }
+
+    fn increments(&mut self, at: &Location, increments: &Increments) {
+        let Increments { fixed, initial, minimum, maximum, max_count } = increments;
+        let others = [initial.is_some(), minimum.is_some(), maximum.is_some(), max_count.is_some()];
+        if fixed.is_some() && others.contains(&true) {
+            let help = "give { fixed = N }, or initial, minimum, maximum and max_count";
+            self.inconsistent(&at.at("fixed"), "`fixed` excludes the keys of automatic increments", help);
+            return;
+        }
+        let ordered = [("minimum", minimum), ("initial", initial), ("maximum", maximum)];
+        for (low, high) in [(0, 1), (1, 2), (0, 2)] {
+            let ((low_key, low), (high_key, high)) = (ordered[low], ordered[high]);
+            if let (Some(low), Some(high)) = (low, high)
+                && low > high
+            {
+                let cause = format!("reversed bounds: `{low_key}` = {low} is larger than `{high_key}` = {high}");
+                self.inconsistent(&at.at(low_key), cause, "required: minimum <= initial <= maximum");
+                return;
+            }
+        }
+    }
+
+    /// Fractions rise in ]0, 1].
+    pub(super) fn ramp(&mut self, at: &Location, ramp: &Ramp) {
+        let Ramp::Path(knots) = ramp else { return };
+        if knots.is_empty() {
+            self.inconsistent(at, "the history is empty", "pairs [fraction of the step, value], for example [[0.5, 1.0], [1.0, 0.0]]");
+        }
+        let mut last = 0.0;
+        for (index, [fraction, _]) in knots.iter().enumerate() {
+            if !(*fraction > last && *fraction <= 1.0) {
+                let requirement = format!("greater than {last} and at most 1: fractions of a step rise from 0 to 1");
+                self.out_of_range(&at.at(index).at(0), "fraction", *fraction, &requirement);
+            }
+            last = *fraction;
+        }
+    }
+
+    fn loads(&mut self, at: &Location, step: &Step) {
+        for (index, force) in step.force.iter().enumerate() {
+            let at = at.at("force").at(index);
+            self.point(&at.at("point"), &force.point);
+            self.load_components(&at, &force.components(), ["fx", "fy", "fz", "mx", "my", "mz"]);
+        }
+        for (index, force) in step.nodal_force.iter().enumerate() {
+            let at = at.at("nodal_force").at(index);
+            self.node_set(&at.at("set"), &force.set);
+            self.load_components(&at, &force.components(), ["fx", "fy", "fz"]);
+        }
+        for (index, traction) in step.traction.iter().enumerate() {
+            let at = at.at("traction").at(index);
+            self.surface(&at.at("surface"), &traction.surface);
+            self.load_components(&at, &traction.components(), ["tx", "ty", "tz"]);
+        }
+    }
+
+    fn load_components<const N: usize>(&mut self, at: &Location, components: &[Option<&Ramp>; N], keys: [&str; N]) {
+        if components.iter().all(Option::is_none) {
+            self.inconsistent(at, "the load has no component", &format!("give at least one of {}", keys.join(", ")));
+        }
+        for (ramp, key) in components.iter().zip(keys) {
+            if let Some(ramp) = ramp {
+                self.ramp(&at.at(key), ramp);
+            }
+        }
+    }
+
+    /// A force on a component that is held does nothing.
+    fn loaded_components(&mut self, at: &Location, step: &Step, resolved: &ProgramStep) {
+        let free = |target: &MotionTarget, component: Component| {
+            let own = resolved.motions.iter().find(|m| m.target == *target && m.component == component);
+            own.is_none_or(|m| m.path == MotionPath::Free)
+        };
+        for (index, force) in step.force.iter().enumerate() {
+            let target = MotionTarget::Point(force.point.clone());
+            for (component, ramp) in Component::ALL.into_iter().zip(force.components()) {
+                if ramp.is_some() && !free(&target, component) {
+                    let (load, motion) = (component.force_key(), component.key());
+                    let cause = format!("`{load}` on \"{}\" does nothing: `{motion}` is prescribed", force.point);
+                    let help = format!("add [[step.prescribe]] with point = \"{}\" and {motion} = \"free\"", force.point);
+                    self.inconsistent(&at.at("force").at(index).at(load), cause, &help);
+                }
+            }
+        }
+        self.standing_loads(at, step, resolved, &free);
+    }
+
+    /// A force of an earlier step on a component that this step prescribes.
+    fn standing_loads(
+        &mut self,
+        at: &Location,
+        step: &Step,
+        resolved: &ProgramStep,
+        free: &dyn Fn(&MotionTarget, Component) -> bool,
+    ) {
+        for load in &resolved.loads {
+            let LoadTarget::Point(point) = &load.target else { continue };
+            let given = step.force.iter().any(|f| f.point == *point && f.components()[load.component.index()].is_some());
+            let acts = load.path.start.is_some_and(|v| v != 0.0) || load.path.end().is_some_and(|v| v != 0.0);
+            if !given && acts && !free(&MotionTarget::Point(point.clone()), load.component) {
+                let (force, motion) = (load.component.force_key(), load.component.key());
+                let cause = format!("the step prescribes `{motion}` of \"{point}\" while `{force}` of an earlier step acts");
+                let help = format!("end the force in the step before: [[step.force]] point = \"{point}\", {force} = 0.0");
+                self.inconsistent(at, cause, &help);
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! A scene file with what belongs to it.
+
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest as _, Sha256};
+
+use super::check;
+use super::sets::DeckNames;
+use super::{Scene, SceneError};
+use crate::document::{self, Document, InvalidDocument, Location, Problem, ProblemKind};
+
+/// A checked scene, where it came from, and the fingerprint of everything it depends on.
+#[derive(Clone, Debug)]
+pub struct SceneFile {
+    /// The scene.
+    pub scene: Scene,
+    /// The file.
+    pub path: PathBuf,
+    /// Its text, for provenance.
+    pub text: String,
+    /// The deck, if there is one, relative to the working folder.
+    pub deck: Option<PathBuf>,
+    /// SHA-256 of the bytes of the scene file followed by those of the deck, in hexadecimal.
+    pub hash: String,
+}
+
+impl SceneFile {
+    /// Reads and checks a scene file and looks into the deck it refers to.
+    ///
+    /// # Errors
+    /// [`SceneError::Read`] when the file cannot be read, [`SceneError::Invalid`] with all problems found in it.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let name = path.display().to_string();
+        let text = text_of(&name, bytes)?;
+        let (scene, document) = document::read::<Scene>(&name, &text)?;
+        let deck = scene.deck.as_ref().map(|deck| folder_of(path).join(&deck.file));
+        let content = match &deck {
+            Some(file) => Some(read_deck(file, &document)?),
+            None => None,
+        };
+        document.reject(check::check(&scene, &document, content.as_ref().map(|c| &c.names)))?;
+        let hash = fingerprint([text.as_bytes(), content.as_ref().map_or(&[], |c| c.bytes.as_slice())]);
+        Ok(Self { scene, path: path.to_owned(), text, deck, hash })
+    }
+
+    /// The folder that relative paths in the scene start from.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        folder_of(&self.path)
+    }
+
+    /// The folder for results: the scene's own choice, or `out/NAME` beside the scene NAME.toml.
+    #[must_use]
+    pub fn output_folder(&self) -> PathBuf {
+        let stem = self.path.file_stem().unwrap_or_default();
+        let own = self.scene.output.folder.clone().unwrap_or_else(|| Path::new("out").join(stem));
+        self.folder().join(own)
+    }
+}
+
+/// A deck's bytes and the names in it.
+struct DeckContent {
+    bytes: Vec<u8>,
+    names: DeckNames,
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// Scene text is UTF-8; a byte that is not is shown where it stands.
+fn text_of(name: &str, bytes: Vec<u8>) -> Result<String, SceneError> {
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+        let kind = ProblemKind::Syntax { message: "the file is not UTF-8 text".to_owned() };
+        InvalidDocument::at(name, &text, valid, kind).into()
+    })
+}
+
+fn read_deck(file: &Path, document: &Document) -> Result<DeckContent, SceneError> {
+    let bytes = std::fs::read(file).map_err(|error| document.invalid(vec![unreadable(file, &error, document)]))?;
+    let names = DeckNames::scan(&String::from_utf8_lossy(&bytes));
+    Ok(DeckContent { bytes, names })
+}
+
+fn unreadable(file: &Path, error: &std::io::Error, document: &Document) -> Problem {
+    let cause = format!("cannot read the deck {}: {error}", file.display());
+    let at = Location::root().at("deck").at("file");
+    document.problem(&at, ProblemKind::Inconsistent { cause }).help("the path is relative to the scene file")
+}
+
+fn fingerprint(parts: [&[u8]; 2]) -> String {
+    let mut hasher = Sha256::new();
+    for part in parts {
+        hasher.update(part);
+    }
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

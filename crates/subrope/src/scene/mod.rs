@@ -1,0 +1,119 @@
+//! Scene files: what a user writes, as plain data.
+//!
+//! A scene is read by [`SceneFile::load`]; every error in it carries file, line, column, cause and allowed values. The
+//! shorthands of a step (`bend`, `tension`) are expanded by [`expand`], and [`Program`] resolves all steps into the
+//! motion of every component and the history of every load, so that whoever runs a scene knows only these.
+//!
+//! Units: mm, N, MPa, mJ, s, K; angles in degrees in scenes and in radians in a [`Program`].
+
+mod boundary;
+mod check;
+mod deck;
+mod element;
+mod error;
+mod expand;
+mod file;
+mod law;
+mod output;
+mod prescription;
+mod program;
+mod sets;
+mod solver;
+mod step;
+mod strand;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub(crate) use check::check_law;
+
+pub use boundary::{Constraint, ConstraintComponents, End, EndKind};
+pub use deck::{Deck, Fibres, HelixFibres};
+pub use element::{Element, Formulation};
+pub use error::SceneError;
+pub use expand::expand;
+pub use file::SceneFile;
+pub use law::{
+    BundleLaw, CharmetantLaw, Compaction, FibreReinforcedLaw, IsotropicLaw, Law, NeoHookeIsochoricLaw, NeoHookeLaw,
+    OrthotropicLaw,
+};
+pub use output::{Field, Output, Precision};
+pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
+pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
+pub use solver::{LineSearch, Solver, Stabilisation};
+pub use step::{
+    Bend, BendAxis, BendEnds, Distribution, Incrementation, Increments, NodalForce, PointForce, Prescribe, Step,
+    Tension, Traction,
+};
+pub use strand::{Hand, MeshLines, Origin, SectionArea, Strand, StrandMesh};
+
+/// The node sets of a generated strand.
+pub const STRAND_SETS: [&str; 6] = ["END_A", "END_B", "LATERAL", "SURFACE_NODES", "AXIS", "ALL"];
+
+/// The surfaces of a generated strand.
+pub const STRAND_SURFACES: [&str; 1] = ["LATERAL"];
+
+/// A scene: mesh, law, boundary, steps, solver and output. Exactly one of `strand` and `deck` is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// What the scene shows, in one line.
+    #[schemars(length(min = 1))]
+    pub title: String,
+    /// Sources, assumptions, remarks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub notes: Option<String>,
+    /// Temperature \[K\].
+    #[serde(default = "room_temperature")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub temperature: f64,
+    /// A strand generated from a few numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strand: Option<Strand>,
+    /// A mesh read from an Abaqus deck.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deck: Option<Deck>,
+    /// The finite element.
+    #[serde(default)]
+    pub element: Element,
+    /// The law of the material.
+    pub law: Law,
+    /// Reference points that carry node sets.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<End>,
+    /// Prescribed displacements of node sets.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub constraint: Vec<Constraint>,
+    /// What happens, step by step; at least one.
+    #[schemars(length(min = 1))]
+    pub step: Vec<Step>,
+    /// Newton's method and the choice of increments.
+    #[serde(default)]
+    pub solver: Solver,
+    /// What a run writes.
+    #[serde(default)]
+    pub output: Output,
+}
+
+fn room_temperature() -> f64 {
+    293.15
+}
+
+impl Scene {
+    /// The JSON schema (draft 2020-12) of scene files; descriptions hold the units.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        crate::document::schema_of::<Self>()
+    }
+
+    /// Reads and checks scene text; `name` is what errors call it. A deck is not opened, so the names of its sets are
+    /// not checked: [`SceneFile::load`] does.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] with all problems found.
+    pub fn from_toml(name: &str, text: &str) -> Result<Self, SceneError> {
+        let (scene, document) = crate::document::read::<Self>(name, text)?;
+        document.reject(check::check(&scene, &document, None))?;
+        Ok(scene)
+    }
+}

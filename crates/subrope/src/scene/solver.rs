@@ -1,0 +1,73 @@
+//! Newton's method and the choice of increments.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Newton's method and the choice of increments. Every key has a default.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// Converged when the residual force is below this fraction of the largest force at work \[-\].
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub residual_tolerance: f64,
+    /// Also required: the work of the residual on the last correction below this fraction of the work of the first
+    /// correction of the increment \[-\].
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub energy_tolerance: f64,
+    /// Iterations before the increment is cut \[-\].
+    #[schemars(range(min = 1))]
+    pub max_iterations: usize,
+    /// "auto": a line search when a full correction does not improve; on the energy where there is one. "off": full
+    /// corrections always.
+    pub line_search: LineSearch,
+    /// Start each increment from the extrapolated last one.
+    pub extrapolate: bool,
+    /// Factor of the next increment after quick convergence \[-\], at least 1.
+    #[schemars(range(min = 1.0))]
+    pub growth: f64,
+    /// Factor of an increment that failed \[-\], between 0 and 1.
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub cutback: f64,
+    /// Artificial damping, off when left out. Its work is reported with the energies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stabilisation: Option<Stabilisation>,
+    /// Threads \[-\]; all cores when left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1))]
+    pub threads: Option<usize>,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            residual_tolerance: 1e-8,
+            energy_tolerance: 1e-10,
+            max_iterations: 20,
+            line_search: LineSearch::Auto,
+            extrapolate: true,
+            growth: 1.5,
+            cutback: 0.5,
+            stabilisation: None,
+            threads: None,
+        }
+    }
+}
+
+/// When to search along a correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LineSearch {
+    /// When a full correction does not improve.
+    Auto,
+    /// Never.
+    Off,
+}
+
+/// Artificial damping against sudden jumps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stabilisation {
+    /// Damping force per velocity and volume \[N s/mm^4\].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub viscosity: f64,
+}

@@ -1,0 +1,43 @@
+//! Every shipped scene parses, validates and has a program; templates are the shipped scenes.
+
+use std::path::{Path, PathBuf};
+
+use subrope::scene::{MotionPath, Program, SceneFile};
+
+fn templates() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("templates");
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut files: Vec<_> = entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    files
+}
+
+fn load(path: &Path) -> SceneFile {
+    SceneFile::load(path).unwrap_or_else(|error| panic!("{}", error.plain()))
+}
+
+#[test]
+fn every_template_validates() {
+    let files = templates();
+    assert!(files.len() >= 6);
+    for file in files {
+        let loaded = load(&file);
+        assert_eq!(loaded.hash.len(), 64);
+        let program = Program::new(&loaded.scene);
+        assert_eq!(program.steps.len(), loaded.scene.step.len());
+        let moving = program.steps.iter().flat_map(|s| &s.motions);
+        assert!(moving.into_iter().any(|m| matches!(&m.path, MotionPath::Linear(p) if !p.knots.is_empty())));
+    }
+}
+
+#[test]
+fn templates_equal_the_shipped_scenes() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    if !scenes.is_dir() {
+        return; // a published package holds the templates alone
+    }
+    for file in templates() {
+        let shipped = scenes.join(file.file_name().unwrap());
+        assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(&shipped).unwrap(), "{}", shipped.display());
+    }
+}

@@ -1,0 +1,51 @@
+#!/bin/sh
+# Formatting, arrows between the crates, lints over every set of features, documentation.
+# Arguments choose: format arrows lint doc; without any, all four.
+set -eu
+cd "$(dirname "$0")/.."
+sh scripts/setup.sh
+
+run() {
+    printf '+ %s\n' "$*"
+    "$@"
+}
+
+clippy() {
+    run cargo clippy --quiet --all-targets "$@" -- -D warnings
+}
+
+component() {
+    cargo "$1" --version >/dev/null 2>&1 || rustup component add "$2"
+}
+
+format() {
+    component fmt rustfmt
+    run cargo fmt --all --check
+}
+
+arrows() {
+    run python3 scripts/check_arrows.py
+}
+
+lint() {
+    component clippy clippy
+    clippy --workspace
+    clippy -p subrope-fem --no-default-features
+    clippy -p subrope-io --no-default-features
+    clippy -p subrope --no-default-features
+    for feature in hdf5 parallel cli; do
+        clippy -p subrope --no-default-features --features "$feature"
+    done
+}
+
+doc() {
+    run env RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+}
+
+[ $# -gt 0 ] || set -- format arrows lint doc
+for part in "$@"; do
+    case $part in
+    format | arrows | lint | doc) "$part" ;;
+    *) printf 'check: unknown part %s; there are format, arrows, lint, doc\n' "$part" >&2 && exit 2 ;;
+    esac
+done
