@@ -1,1 +1,18 @@
-//! Whole-scene tests live in `tests/tests`.
+//! What the whole-scene tests in `tests/tests` share: small meshes, models put together by hand, runs with a memory.
+
+#![allow(clippy::unwrap_used, reason = "a helper of tests fails by panicking")]
+#![allow(clippy::panic, reason = "a helper of tests fails by panicking")]
+
+mod bricks;
+mod compare;
+mod dense;
+mod meshes;
+mod problem;
+mod rope;
+
+pub use bricks::{Brick, brick, constant_frames, fields_of};
+pub use compare::{Worst, close, matrix_close, relative};
+pub use dense::Dense;
+pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity};
+pub use problem::{Problem, Recorder, Row, StepBuilder};
+pub use rope::{Run, run_scene, scene, try_run};

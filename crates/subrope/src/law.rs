@@ -32,8 +32,10 @@ pub fn bundle(law: &scene::BundleLaw) -> Result<material::BundleLaw, LawError> {
 /// Parameters of the bundle law. A parameter that a checked scene cannot lack counts as 0.
 #[must_use]
 pub fn bundle_parameters(law: &scene::BundleLaw) -> material::BundleParameters {
-    let transverse = Sliding { tau: law.tau_t, h: law.H_t, h_inf: law.H_inf_t, kappa_s: law.kappa_s_t, x: law.X_t, mu: law.mu_t };
-    let longitudinal = Sliding { tau: law.tau_l, h: law.H_l, h_inf: law.H_inf_l, kappa_s: law.kappa_s_l, x: law.X_l, mu: law.mu_l };
+    let transverse =
+        Sliding { tau: law.tau_t, h: law.H_t, h_inf: law.H_inf_t, kappa_s: law.kappa_s_t, x: law.X_t, mu: law.mu_t };
+    let longitudinal =
+        Sliding { tau: law.tau_l, h: law.H_l, h_inf: law.H_inf_l, kappa_s: law.kappa_s_l, x: law.X_l, mu: law.mu_l };
     let compaction = match law.compaction {
         scene::Compaction::Quadratic => material::Compaction::Quadratic,
         scene::Compaction::Power => {

@@ -15,8 +15,8 @@ use crate::scene::SceneFile;
 /// (ParaView, needs the feature `hdf5`).
 ///
 /// # Errors
-/// [`Error::MeshFormat`] for another ending, [`Error::Model`] when the scene makes no mesh, [`Error::Run`] when the file
-/// cannot be written.
+/// [`Error::MeshFormat`] for another ending, [`Error::Model`] when the scene makes no mesh, [`Error::Run`] when the
+/// file cannot be written.
 pub fn write_mesh(file: &SceneFile, output: &Path) -> Result<(), Error> {
     let ending = output.extension().unwrap_or_default().to_ascii_lowercase();
     match ending.to_str() {
@@ -52,7 +52,8 @@ fn write_vtkhdf(model: &MeshModel, file: &SceneFile, output: &Path) -> Result<()
 /// One frame per element: the mean directions e1 and e2 over its integration points, made orthonormal.
 fn cell_frames(model: &MeshModel) -> Result<Vec<Matrix3<f64>>, ModelError> {
     let points = (model.frames.len() / model.mesh.cell_count().max(1)).max(1);
-    let mean = |frames: &[Matrix3<f64>], axis: usize| frames.iter().map(|f| f.column(axis).into_owned()).sum::<Vector3<f64>>();
+    let mean =
+        |frames: &[Matrix3<f64>], axis: usize| frames.iter().map(|f| f.column(axis).into_owned()).sum::<Vector3<f64>>();
     let cells = model.frames.chunks_exact(points);
     cells.map(|frames| Ok(frame_from_directions(&mean(frames, 0), &mean(frames, 1))?)).collect()
 }

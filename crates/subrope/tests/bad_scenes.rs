@@ -1,4 +1,5 @@
 //! Wrong scenes are answered with place, cause, allowed values and a suggestion.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use subrope::scene::{Scene, SceneError};
 
@@ -83,7 +84,11 @@ fn keys() {
     expect("tau_t", "tau_T", &["unknown key `tau_T`", "did you mean `tau_t`?"]);
     expect("radius = 2.785", "radius = 2.785\nradius = 3.0", &["bad.toml:5:1", "duplicate key"]);
     expect("angle = 90.0", "angle = 90.0\naxs = \"x\"", &["unknown key `axs`", "did you mean `axis`"]);
-    expect("name = \"END_A\"", "name = \"END_A\"\nnodes = \"X\"", &["unknown key `nodes` in [end]", "kind, name, point, set"]);
+    expect(
+        "name = \"END_A\"",
+        "name = \"END_A\"\nnodes = \"X\"",
+        &["unknown key `nodes` in [end]", "kind, name, point, set"],
+    );
 }
 
 #[test]
@@ -100,17 +105,33 @@ fn types() {
 
 #[test]
 fn words() {
-    expect("kind = \"bundle\"", "kind = \"bundel\"", &["`kind` cannot be \"bundel\"", "did you mean `bundle`?", "neo_hooke", "bad.toml:12:8"]);
+    expect(
+        "kind = \"bundle\"",
+        "kind = \"bundel\"",
+        &["`kind` cannot be \"bundel\"", "did you mean `bundle`?", "neo_hooke", "bad.toml:12:8"],
+    );
     expect("kind = \"bundle\"\n", "", &["[law] needs the key `kind`", "allowed values: bundle, charmetant"]);
     expect("[strand]\n", "[strand]\nhand = \"rigth\"\n", &["did you mean `right`?", "allowed values: right, left"]);
-    expect("angle = 90.0", "angle = 90.0\nends = \"fixed\"", &["`ends` cannot be \"fixed\"", "allowed values: free, circle"]);
-    expect("[law]", "[element]\nformulation = \"C3D8\"\n[law]", &["`formulation` cannot be \"C3D8\"", "hex8_mean_volume"]);
+    expect(
+        "angle = 90.0",
+        "angle = 90.0\nends = \"fixed\"",
+        &["`ends` cannot be \"fixed\"", "allowed values: free, circle"],
+    );
+    expect(
+        "[law]",
+        "[element]\nformulation = \"C3D8\"\n[law]",
+        &["`formulation` cannot be \"C3D8\"", "hex8_mean_volume"],
+    );
     expect("[law]", "[output]\nfields = [\"strain\"]\n[law]", &["`fields[0]` cannot be \"strain\"", "strain_modes"]);
 }
 
 #[test]
 fn numbers() {
-    expect("radius = 2.785", "radius = -2.785", &["`radius` = -2.785 is out of range: it must be greater than 0", "[mm]"]);
+    expect(
+        "radius = 2.785",
+        "radius = -2.785",
+        &["`radius` = -2.785 is out of range: it must be greater than 0", "[mm]"],
+    );
     expect("surface_angle = 30.0", "surface_angle = 90", &["`surface_angle` = 90", "less than 90", "bad.toml:6:17"]);
     expect("length = 60.0", "length = nan", &["`length` = NaN is out of range: it must be a finite number"]);
     expect("length = 60.0", "length = inf", &["a finite number"]);
@@ -127,10 +148,22 @@ fn numbers() {
 
 #[test]
 fn contradictions() {
-    expect("[law]", "[deck]\nfile = \"a.inp\"\nfibres = \"deck\"\n[law]", &["either [strand] or [deck], not both", "bad.toml:11:2"]);
-    expect("surface_angle = 30.0", "surface_angle = 30.0\npitch = 30.3", &["`surface_angle` and `pitch` exclude", "bad.toml:7:9"]);
+    expect(
+        "[law]",
+        "[deck]\nfile = \"a.inp\"\nfibres = \"deck\"\n[law]",
+        &["either [strand] or [deck], not both", "bad.toml:11:2"],
+    );
+    expect(
+        "surface_angle = 30.0",
+        "surface_angle = 30.0\npitch = 30.3",
+        &["`surface_angle` and `pitch` exclude", "bad.toml:7:9"],
+    );
     expect("surface_angle = 30.0\n", "", &["needs the key `surface_angle`", "or `pitch`"]);
-    expect("initial = 0.1, maximum = 0.2", "initial = 0.3, maximum = 0.2", &["reversed bounds: `initial` = 0.3", "minimum <= initial <= maximum"]);
+    expect(
+        "initial = 0.1, maximum = 0.2",
+        "initial = 0.3, maximum = 0.2",
+        &["reversed bounds: `initial` = 0.3", "minimum <= initial <= maximum"],
+    );
     expect("initial = 0.1, maximum = 0.2", "fixed = 4, maximum = 0.2", &["`fixed` excludes"]);
     expect("tau_t = 0.05\n", "", &["[law] needs the key `tau_t`", "friction = false"]);
     expect("tau_t = 0.05", "tau_t = 0.05\nz_lock = -0.3", &["`z_lock` is not read with this `compaction`"]);
@@ -142,13 +175,33 @@ fn contradictions() {
 
 #[test]
 fn names() {
-    expect("name = \"END_B\"", "name = \"END_C\"\nset = \"END_B\"", &["no reference point named \"END_B\"", "did you mean `END_A`?", "bad.toml:31:7"]);
-    expect("name = \"END_A\"", "name = \"END_A\"\nset = \"END_AA\"", &["no node set named \"END_AA\"", "known names: END_A, END_B"]);
+    expect(
+        "name = \"END_B\"",
+        "name = \"END_C\"\nset = \"END_B\"",
+        &["no reference point named \"END_B\"", "did you mean `END_A`?", "bad.toml:31:7"],
+    );
+    expect(
+        "name = \"END_A\"",
+        "name = \"END_A\"\nset = \"END_AA\"",
+        &["no node set named \"END_AA\"", "known names: END_A, END_B"],
+    );
     expect("name = \"END_B\"", "name = \"END_A\"", &["the name \"END_A\" is used twice in [[end]]", "bad.toml:25:8"]);
     expect("name = \"END_B\"", "name = \"END_B\"\nset = \"END_A\"", &["already carried by \"END_A\""]);
-    expect("angle = 90.0", "angle = 90.0\n[[step.force]]\npoint = \"TIP\"\nfz = 1.0", &["no reference point named \"TIP\""]);
-    expect("angle = 90.0", "angle = 90.0\n[[step.traction]]\nsurface = \"LATREAL\"\ntz = 1.0", &["did you mean `LATERAL`?"]);
-    expect("angle = 90.0", "angle = 90.0\n[[step.nodal_force]]\nset = \"NONE\"\nfz = 1.0", &["no node set named \"NONE\""]);
+    expect(
+        "angle = 90.0",
+        "angle = 90.0\n[[step.force]]\npoint = \"TIP\"\nfz = 1.0",
+        &["no reference point named \"TIP\""],
+    );
+    expect(
+        "angle = 90.0",
+        "angle = 90.0\n[[step.traction]]\nsurface = \"LATREAL\"\ntz = 1.0",
+        &["did you mean `LATERAL`?"],
+    );
+    expect(
+        "angle = 90.0",
+        "angle = 90.0\n[[step.nodal_force]]\nset = \"NONE\"\nfz = 1.0",
+        &["no node set named \"NONE\""],
+    );
 }
 
 #[test]
@@ -179,7 +232,11 @@ fn laws_and_elements() {
     let orthotropic = "kind = \"orthotropic\"\nE1 = 1.0\nE2 = 10.0\nE3 = 1.0\nnu12 = 0.5\nnu13 = 0.0\nnu23 = 0.0\n\
                        G12 = 1.0\nG13 = 1.0\nG23 = 1.0\n";
     expect(law, orthotropic, &["not positive definite", "nu12^2 < E1/E2"]);
-    expect(law, "kind = \"neo_hooke\"\nmu = 1.0\nkappa = 2.0\n", &["unknown key `kappa` in [law]", "allowed keys: kind, lambda, mu"]);
+    expect(
+        law,
+        "kind = \"neo_hooke\"\nmu = 1.0\nkappa = 2.0\n",
+        &["unknown key `kappa` in [law]", "allowed keys: kind, lambda, mu"],
+    );
 }
 
 #[test]

@@ -1,4 +1,5 @@
 //! The binary: exit codes, templates, schema, plain errors.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![cfg(feature = "cli")]
 
 use std::path::Path;

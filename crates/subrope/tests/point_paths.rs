@@ -1,4 +1,5 @@
 //! Point files: the reference paths reproduced, round trips, interpolation, errors.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::PathBuf;
 
@@ -53,12 +54,7 @@ fn layout_and_numbers_survive() {
     let (old, new): (serde_json::Value, serde_json::Value) =
         (serde_json::from_str(&text).unwrap(), serde_json::from_str(&written).unwrap());
     assert_eq!(old, new);
-    // The same layout to the byte, but for the spelling of exponents.
-    let plain = |text: &str| text.replace("e-0", "e-");
-    let (old, new) = (plain(&text), plain(&written));
-    let end = |s: &str| s.trim_end().len();
-    assert_eq!(old[..2000], new[..2000]);
-    assert!((end(&old) as i64 - end(&new) as i64).abs() < 2000, "{} and {}", end(&old), end(&new));
+    assert!(text.trim_end() == written, "not the same bytes");
 }
 
 #[test]
@@ -132,7 +128,7 @@ fn wrong_toml_is_answered_with_its_place() {
     };
     assert!(answer("tau_l = 1.0\n", "").contains("[law] needs the key `tau_l`"));
     assert!(answer("cycles = 2", "cycle = 2").contains("did you mean `cycles`?"));
-    assert!(answer("steps = 10", "steps = 10\nF = [[1.0]]").contains("loop.toml:18:5"));
+    assert!(answer("steps = 10", "steps = 10\nF = [[1.0]]").contains("loop.toml:17:5"));
     let both = "modes = [0.0, 0.0, 0.0, 0.0, 0.5, 0.0]\nH = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]";
     assert!(answer("modes = [0.0, 0.0, 0.0, 0.0, 0.5, 0.0]", both).contains("exactly one of `H`, `F`, `modes`"));
     assert!(answer("[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]").contains("cannot be zero"));
@@ -148,13 +144,17 @@ fn wrong_json_names_the_entry() {
         let cause = std::error::Error::source(&error).map(ToString::to_string).unwrap_or_default();
         format!("{error} {cause}")
     };
-    let path = |params: &str, step: &str| format!(r#"{{"paths": [{{"name": "n", "params": {{{params}}}, "steps": [{step}]}}]}}"#);
+    let path = |params: &str, step: &str| {
+        format!(r#"{{"paths": [{{"name": "n", "params": {{{params}}}, "steps": [{step}]}}]}}"#)
+    };
     let good = r#""K_e": 1, "K_ec": 1, "K_c": 1, "K_t": 1, "K_l": 1, "friction": 0"#;
     let rest = r#"{"F": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}"#;
     assert!(answer("{\"paths\": [}").contains("line 1"));
     assert!(answer("{}").contains("missing field `paths`"));
     assert!(answer(&path(good, "{}")).contains("paths[0] \"n\", steps[0]: the step needs one of the keys F, H, modes"));
-    assert!(answer(&path(good, r#"{"F": [[1, 0], [0, 1]]}"#)).contains("paths[0] \"n\", steps[0]"));
+    let short = answer(&path(good, r#"{"F": [[1, 0], [0, 1]]}"#));
+    assert!(short.contains("paths[0]: steps[0]: invalid length 2") && short.contains("at line 1 column"), "{short}");
+    assert!(answer(&path(good, rest).replace("[{\"name", "[{\"state0\": [0], \"name")).contains("must hold 8 numbers"));
     assert!(answer(&path("", rest)).contains("`params` needs K_e"));
     assert!(answer(&path(&format!("{good}, \"Kt\": 1"), rest)).contains("unknown key Kt"));
     assert!(answer(&path(&good.replace("\"K_e\": 1", "\"K_e\": -1"), rest)).contains("K_e"));

@@ -1,7 +1,9 @@
 //! Shorthands in general form, and steps resolved into motions and loads.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use subrope::scene::{
-    Component, Load, LoadTarget, Motion, MotionPath, MotionTarget, Prescription, Program, ProgramStep, Ramp, Scene, expand,
+    Component, Load, LoadTarget, Motion, MotionPath, MotionTarget, Prescription, Program, ProgramStep, Ramp, Scene,
+    expand,
 };
 
 const HEAD: &str = r#"
@@ -63,8 +65,8 @@ fn expansion_is_the_general_form_a_user_could_write() {
     assert_eq!(Program::new(&short), Program::new(&long));
     let short = scene("[[step]]\nname = \"s\"\n[step.bend]\nangle = 30.0\nends = \"circle\"");
     let long = scene(
-        "[[step]]\nname = \"s\"\n[[step.prescribe]]\npoint = \"END_A\"\nrx = 30.0\n[[step.prescribe]]\npoint = \"END_B\"\n\
-         rx = -30.0\nuz = { arc = { length = 60.0, angle = 30.0 } }",
+        "[[step]]\nname = \"s\"\n[[step.prescribe]]\npoint = \"END_A\"\nrx = 30.0\n[[step.prescribe]]\n\
+         point = \"END_B\"\nrx = -30.0\nuz = { arc = { length = 60.0, angle = 30.0 } }",
     );
     assert_eq!(Program::new(&short), Program::new(&long));
 }
@@ -86,16 +88,25 @@ fn angles_become_radians_and_the_rest_is_held() {
 #[test]
 fn the_circle_keeps_the_arc_length() {
     let scene = scene(
-        "[[step]]\nname = \"half\"\n[step.bend]\nangle = 45.0\nends = \"circle\"\n[[step]]\nname = \"full\"\n[step.bend]\n\
-         angle = 90.0\nends = \"circle\"\n[[step]]\nname = \"hold\"\n[[step]]\nname = \"back\"\n[step.bend]\nangle = 0.0\n\
-         ends = \"circle\"",
+        "[[step]]\nname = \"half\"\n[step.bend]\nangle = 45.0\nends = \"circle\"\n[[step]]\nname = \"full\"\n\
+         [step.bend]\nangle = 90.0\nends = \"circle\"\n[[step]]\nname = \"hold\"\n[[step]]\nname = \"back\"\n\
+         [step.bend]\nangle = 0.0\nends = \"circle\"",
     );
     let program = Program::new(&scene);
     let exact = |degrees: f64| {
         let theta = degrees.to_radians();
         if theta == 0.0 { 0.0 } else { 60.0 * (theta.sin() / theta - 1.0) }
     };
-    let cases = [(0, 0.5, 22.5), (0, 1.0, 45.0), (1, 0.0, 45.0), (1, 0.5, 67.5), (1, 1.0, 90.0), (2, 0.3, 90.0), (3, 0.5, 45.0), (3, 1.0, 0.0)];
+    let cases = [
+        (0, 0.5, 22.5),
+        (0, 1.0, 45.0),
+        (1, 0.0, 45.0),
+        (1, 0.5, 67.5),
+        (1, 1.0, 90.0),
+        (2, 0.3, 90.0),
+        (3, 0.5, 45.0),
+        (3, 1.0, 0.0),
+    ];
     for (step, fraction, degrees) in cases {
         let found = motion(&program.steps[step], "END_B", Component::Uz).value(fraction, f64::NAN).unwrap();
         assert!((found - exact(degrees)).abs() < 1e-12, "step {step} at {fraction}: {found} for {degrees} deg");
@@ -108,8 +119,8 @@ fn the_circle_keeps_the_arc_length() {
 #[test]
 fn histories_start_where_the_step_before_ended() {
     let scene = scene(
-        "[[step]]\nname = \"1\"\n[[step.prescribe]]\npoint = \"END_B\"\nuz = [[0.25, 2.0], [0.5, -1.0]]\nux = \"free\"\n\
-         [[step]]\nname = \"2\"\n[[step.prescribe]]\npoint = \"END_B\"\nuz = 3.0\nux = 1.0",
+        "[[step]]\nname = \"1\"\n[[step.prescribe]]\npoint = \"END_B\"\nuz = [[0.25, 2.0], [0.5, -1.0]]\n\
+         ux = \"free\"\n[[step]]\nname = \"2\"\n[[step.prescribe]]\npoint = \"END_B\"\nuz = 3.0\nux = 1.0",
     );
     let program = Program::new(&scene);
     let first = motion(&program.steps[0], "END_B", Component::Uz);
@@ -131,7 +142,8 @@ fn forces_stay_until_they_are_changed() {
     );
     let program = Program::new(&scene);
     let pull = LoadTarget::Point("END_B".into());
-    let at = |step: usize, fraction: f64| load(&program.steps[step], &pull, Component::Uz).path.value(fraction, f64::NAN);
+    let at =
+        |step: usize, fraction: f64| load(&program.steps[step], &pull, Component::Uz).path.value(fraction, f64::NAN);
     assert_eq!([at(0, 0.5), at(0, 1.0), at(1, 0.0), at(1, 1.0), at(2, 0.25)], [50.0, 100.0, 100.0, 100.0, 75.0]);
     assert_eq!(motion(&program.steps[1], "END_B", Component::Uz), MotionPath::Free);
     let traction = load(&program.steps[2], &LoadTarget::Surface("LATERAL".into()), Component::Ux);
@@ -142,7 +154,8 @@ fn forces_stay_until_they_are_changed() {
 
 #[test]
 fn a_standing_force_on_a_held_component_is_an_error() {
-    let steps = "[[step]]\nname = \"pull\"\n[step.tension]\nforce = 100.0\n[[step]]\nname = \"hold\"\n[step.tension]\nelongation = 0.1";
+    let steps = "[[step]]\nname = \"pull\"\n[step.tension]\nforce = 100.0\n[[step]]\nname = \"hold\"\n\
+                 [step.tension]\nelongation = 0.1";
     let answer = Scene::from_toml("test.toml", &format!("{HEAD}{steps}")).unwrap_err().plain();
     assert!(answer.contains("prescribes `uz` of \"END_B\" while `fz` of an earlier step acts"), "{answer}");
 }

@@ -1,4 +1,5 @@
 //! Every shipped scene parses, validates and has a program; templates are the shipped scenes.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,8 @@ use subrope::scene::{MotionPath, Program, SceneFile};
 fn templates() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("templates");
     let entries = std::fs::read_dir(folder).unwrap();
-    let mut files: Vec<_> = entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    let mut files: Vec<_> =
+        entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
     files.sort();
     files
 }
@@ -40,4 +42,15 @@ fn templates_equal_the_shipped_scenes() {
         let shipped = scenes.join(file.file_name().unwrap());
         assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(&shipped).unwrap(), "{}", shipped.display());
     }
+}
+
+#[test]
+fn the_shipped_point_file_gives_its_loop() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/points/friction_loop.toml");
+    if !file.is_file() {
+        return; // a published package holds the templates alone
+    }
+    let computed = subrope::point::compute("loop", &subrope::point::load(&file).unwrap(), false).unwrap();
+    let dissipated: Vec<f64> = computed.paths[0].steps.iter().map(|s| s.state.as_ref().unwrap()[7]).collect();
+    assert!((dissipated[179] - dissipated[99] - 1.6).abs() < 1e-12);
 }

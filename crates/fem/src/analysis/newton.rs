@@ -237,11 +237,14 @@ fn relative_residual(iterate: &Iterate) -> f64 {
     if iterate.norm == 0.0 { 0.0 } else { iterate.norm / iterate.reference }
 }
 
-/// Whether the residual has grown for so long that more iterations are wasted.
+/// Iterations after which an attempt must still make headway.
+const PATIENCE: usize = 10;
+
+/// Whether more iterations are wasted: no headway over the last six, or a residual beyond all bounds.
 fn hopeless(residuals: &[f64]) -> bool {
     let n = residuals.len();
-    let best = residuals.iter().copied().fold(f64::INFINITY, f64::min);
-    n > 6 && residuals[n - 3..].iter().all(|&r| r > 1e4 * best) || residuals.last().is_some_and(|r| *r > 1e12)
+    let stalled = n > PATIENCE && residuals[n - 1] > 0.1 * residuals[n - 7];
+    stalled || residuals.last().is_some_and(|r| *r > 1e12)
 }
 
 impl super::workspace::Target {

@@ -109,7 +109,7 @@ fn factorise_panel(
 ) -> Result<(), LinearError> {
     let supernode = &plan.supernodes.list[number];
     let (finished, open) = factor.split_at_mut(supernode.offset - base);
-    let target = &mut open[..supernode.len()];
+    let target: &mut [f64] = &mut open[..supernode.len()];
     target.fill(0.0);
     for entry in plan.entries(number) {
         target[entry.place as usize] += values[entry.slot as usize];
@@ -119,13 +119,13 @@ fn factorise_panel(
         let source_values = &finished[source.offset - base..][..source.len()];
         panel::update(
             &plan.supernodes,
-            (supernode, panel::panel_mut(target, supernode)),
-            (source, panel::panel(source_values, source)),
+            (supernode, target),
+            (source, source_values),
             update.first_run as usize,
             work,
         );
     }
-    panel::factorise(panel::panel_mut(target, supernode), work).map_err(|column| {
+    panel::factorise(target, supernode, work).map_err(|column| {
         let dof = plan.order.get(supernode.begin + column).map_or(0, |&dof| dof as usize);
         let pivot = target[column * (supernode.rows + 1)];
         if pivot.is_finite() {

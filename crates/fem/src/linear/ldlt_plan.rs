@@ -62,14 +62,14 @@ impl Plan {
         let mut size = WorkspaceSize::default();
         for number in targets {
             let target = &self.supernodes.list[number];
-            size.columns = size.columns.max(target.columns());
+            size.include_panel(target);
             for update in self.updates(number) {
                 let source = &self.supernodes.list[update.source as usize];
                 let runs = &self.supernodes.runs(source)[update.first_run as usize..];
                 if let Some(first) = runs.first() {
                     let row = first.local as usize + target.begin.saturating_sub(first.begin as usize);
                     let pieces = runs.len() + self.supernodes.runs(target).len();
-                    size.include(target, source, row, pieces);
+                    size.include_update(target, source, row, pieces);
                 }
             }
         }

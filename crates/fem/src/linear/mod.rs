@@ -15,6 +15,7 @@ mod dissection;
 mod error;
 mod fill;
 mod graph;
+mod kernel;
 mod ldlt;
 mod ldlt_plan;
 mod ldlt_solve;

@@ -38,7 +38,8 @@ pub struct SolverOptions {
     pub block_memory: usize,
     /// Ratio of the memory of the block LU to the estimate for the sparse LU above which it gives way [-].
     pub block_memory_ratio: f64,
-    /// Pivot below which the matrix is called singular, relative to the largest entry of its row [-].
+    /// Pivot below which the matrix is called singular, relative to the largest entry of its row [-]. With
+    /// [`Method::SparseLu`] a bound of the smallest singular value relative to the norm of the matrix.
     pub singular_pivot: f64,
     /// Relative residual that ends the refinement [-].
     pub target_residual: f64,
@@ -63,7 +64,7 @@ impl Default for SolverOptions {
             unsymmetric: None,
             block_memory: 4 << 30,
             block_memory_ratio: 4.0,
-            singular_pivot: 1e-14,
+            singular_pivot: 1e-13,
             target_residual: 1e-15,
             residual_limit: 1e-9,
             least_refinements: 1,

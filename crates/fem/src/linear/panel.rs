@@ -1,51 +1,56 @@
-//! Dense kernels on the panels of supernodes.
+//! Dense work on the panels of supernodes: register kernels for those that fit the cache, general matrix products for
+//! larger ones.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization, cholesky_in_place};
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::{Accum, MatMut, MatRef, Par, Spec};
+use faer::{Accum, MatMut, MatRef, Par};
+use pulp::Arch;
 
+use super::kernel::{BLOCK, Factorisation, Piece, Product};
 use super::parallel::join;
 use super::supernodes::{Run, Supernode, Supernodes};
 
-/// Rows per part of a product or solve that is worth a thread of its own.
+/// Rows per part of a product that is worth a thread of its own.
 const SPLIT_ROWS: usize = 512;
 /// Work below which a product is not split [flop].
 const SPLIT_FLOPS: usize = 20_000_000;
 /// Rows and columns per piece from which an update goes straight to its target.
 const DIRECT_ROWS: usize = 24;
 const DIRECT_COLUMNS: usize = 12;
-
-/// Rows `source..source + len` of the updating panel that land on rows `target..` of the updated one.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    source: usize,
-    target: usize,
-    len: usize,
-}
+/// Entries of an updating panel up to which the register kernels are used.
+const CACHED_ENTRIES: usize = 40_000;
+/// Columns of a panel factorised before the rest of it is updated.
+const PANEL_COLUMNS: usize = 64;
 
 /// Buffers of one branch, allocated once.
 pub(super) struct Workspace {
     scaled: Vec<f64>,
     product: Vec<f64>,
     pieces: Vec<Piece>,
-    stack: MemBuffer,
+    pivots: Vec<f64>,
+    arch: Arch,
 }
 
 /// Sizes of the buffers of a branch.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WorkspaceSize {
-    pub(super) scaled: usize,
-    pub(super) product: usize,
-    pub(super) columns: usize,
-    pub(super) pieces: usize,
+    scaled: usize,
+    product: usize,
+    columns: usize,
+    pieces: usize,
 }
 
 impl WorkspaceSize {
-    pub(super) fn include(&mut self, target: &Supernode, source: &Supernode, first_row: usize, runs: usize) {
+    /// Makes room for the factorisation of `target`.
+    pub(super) fn include_panel(&mut self, target: &Supernode) {
+        self.columns = self.columns.max(target.columns());
+        self.scaled = self.scaled.max(target.columns() * PANEL_COLUMNS.max(BLOCK));
+    }
+
+    /// Makes room for an update of `target` by the rows of `source` from `first_row` on, in at most `runs` runs.
+    pub(super) fn include_update(&mut self, target: &Supernode, source: &Supernode, first_row: usize, runs: usize) {
         let middle = target.columns().min(source.rows - first_row);
-        self.scaled = self.scaled.max(middle * source.columns());
+        self.columns = self.columns.max(source.columns());
+        self.scaled = self.scaled.max(middle.max(BLOCK) * source.columns());
         self.product = self.product.max(middle * (source.rows - first_row));
         self.pieces = self.pieces.max(runs + 2);
     }
@@ -53,24 +58,19 @@ impl WorkspaceSize {
 
 impl Workspace {
     pub(super) fn new(size: &WorkspaceSize) -> Self {
-        use faer::linalg::cholesky::ldlt::factor::cholesky_in_place_scratch;
-        let params = Spec::<LdltParams, f64>::default();
         Self {
             scaled: vec![0.0; size.scaled],
             product: vec![0.0; size.product],
             pieces: Vec::with_capacity(size.pieces),
-            stack: MemBuffer::new(cholesky_in_place_scratch::<f64>(size.columns, Par::Seq, params)),
+            pivots: vec![0.0; size.columns],
+            arch: Arch::new(),
         }
     }
 
     pub(super) fn bytes(&self) -> usize {
-        (self.scaled.len() + self.product.len()) * size_of::<f64>() + self.pieces.capacity() * size_of::<Piece>()
+        (self.scaled.len() + self.product.len() + self.pivots.len()) * size_of::<f64>()
+            + self.pieces.capacity() * size_of::<Piece>()
     }
-}
-
-/// A column-major panel being updated.
-pub(super) fn panel_mut<'a>(values: &'a mut [f64], supernode: &Supernode) -> MatMut<'a, f64> {
-    MatMut::from_column_major_slice_mut(values, supernode.rows, supernode.columns())
 }
 
 /// A finished column-major panel.
@@ -81,8 +81,8 @@ pub(super) fn panel<'a>(values: &'a [f64], supernode: &Supernode) -> MatRef<'a, 
 /// Subtracts from the panel of `target` what the finished panel `source` contributes, `L D Lᵀ` over their common rows.
 pub(super) fn update(
     supernodes: &Supernodes,
-    (target, mut target_panel): (&Supernode, MatMut<'_, f64>),
-    (source, source_panel): (&Supernode, MatRef<'_, f64>),
+    (target, target_values): (&Supernode, &mut [f64]),
+    (source, source_values): (&Supernode, &[f64]),
     first_run: usize,
     work: &mut Workspace,
 ) {
@@ -91,24 +91,53 @@ pub(super) fn update(
     let first_row = first.local as usize + target.begin.saturating_sub(first.begin as usize);
     let (middle, columns) = collect_pieces(supernodes, target, runs, first_row, &mut work.pieces);
     let rows = source.rows - first_row;
-    let depth = source.columns();
-    let lower = source_panel.subrows(first_row, rows);
-    let mut scaled = MatMut::from_column_major_slice_mut(&mut work.scaled[..middle * depth], middle, depth);
-    scale_columns(scaled.as_mut(), lower.subrows(0, middle), source_panel);
-    let (scaled, pieces) = (scaled.as_ref(), &work.pieces[..]);
-    if rows >= DIRECT_ROWS * (pieces.len() - 1) && middle >= DIRECT_COLUMNS * (columns - 1) {
+    let pivots = &mut work.pivots[..source.columns()];
+    for (column, pivot) in pivots.iter_mut().enumerate() {
+        *pivot = source_values[column * (source.rows + 1)];
+    }
+    let pieces = &work.pieces[..];
+    let direct = rows >= DIRECT_ROWS * (pieces.len() - 1) && middle >= DIRECT_COLUMNS * (columns - 1);
+    let whole = [Piece { source: 0, target: 0, len: middle }, Piece { source: middle, target: middle, len: rows - middle }];
+    let common = Common { source, lower: &source_values[first_row..], pivots, scaled: &mut work.scaled, arch: work.arch };
+    if direct {
+        common.subtract(target_values, target.rows, pieces, columns);
+    } else {
+        let product = &mut work.product[..rows * middle];
+        product.fill(0.0);
+        common.subtract(product, rows, &whole, 1);
+        add_pieces(target_values, target.rows, product, rows, pieces, columns);
+    }
+}
+
+/// The updating side of an update.
+struct Common<'a> {
+    source: &'a Supernode,
+    /// Its panel from the first of the rows that matter.
+    lower: &'a [f64],
+    pivots: &'a [f64],
+    scaled: &'a mut [f64],
+    arch: Arch,
+}
+
+impl Common<'_> {
+    /// `target -= L D Lᵀ` over the rows of `pieces`.
+    fn subtract(self, target: &mut [f64], target_stride: usize, pieces: &[Piece], columns: usize) {
+        let (lower, stride, pivots, scaled) = (self.lower, self.source.rows, self.pivots, self.scaled);
+        if self.source.len() <= CACHED_ENTRIES {
+            self.arch.dispatch(Product { target, target_stride, lower, stride, pivots, pieces, columns, scaled });
+            return;
+        }
+        let depth = pivots.len();
+        let mut matrix = strided_mut(target, target_stride);
         for (place, column) in pieces[..columns].iter().enumerate() {
-            let factor = scaled.subrows(column.source, column.len).transpose();
-            for row in &pieces[place..] {
-                let part =
-                    target_panel.as_mut().submatrix_mut(row.target, column.target, row.len, column.len);
-                subtract_product(part, lower.subrows(row.source, row.len), factor);
+            scale_rows(&lower[column.source..], stride, pivots, column.len, scaled);
+            let factor = MatRef::from_column_major_slice(&scaled[..column.len * depth], column.len, depth).transpose();
+            for row in pieces[place..].iter().filter(|row| row.len > 0) {
+                let left = strided(&lower[row.source..], stride, row.len, depth);
+                let part = matrix.as_mut().submatrix_mut(row.target, column.target, row.len, column.len);
+                subtract_product(part, left, factor);
             }
         }
-    } else {
-        let mut product = MatMut::from_column_major_slice_mut(&mut work.product[..rows * middle], rows, middle);
-        product_into(product.as_mut(), lower, scaled.transpose());
-        subtract_pieces(target_panel, product.as_ref(), pieces, columns);
     }
 }
 
@@ -163,16 +192,22 @@ fn pieces_end_below(piece: &Piece, target: &Supernode) -> bool {
     piece.target >= target.columns()
 }
 
-/// `scaled = lower D` with the pivots on the diagonal of the panel.
-fn scale_columns(mut scaled: MatMut<'_, f64>, lower: MatRef<'_, f64>, source_panel: MatRef<'_, f64>) {
-    for column in 0..lower.ncols() {
-        let pivot = source_panel[(column, column)];
-        let source = lower.col(column).try_as_col_major().map(|c| c.as_slice());
-        let target = scaled.as_mut().col_mut(column).try_as_col_major_mut().map(|c| c.as_slice_mut());
-        if let (Some(source), Some(target)) = (source, target) {
-            for (value, &entry) in target.iter_mut().zip(source) {
-                *value = entry * pivot;
-            }
+/// The columns of a panel as a matrix.
+fn strided_mut(values: &mut [f64], stride: usize) -> MatMut<'_, f64> {
+    let columns = values.len() / stride.max(1);
+    MatMut::from_column_major_slice_mut(&mut values[..stride * columns], stride, columns)
+}
+
+/// Rows `0..rows` of a panel that starts in the middle of its first column.
+fn strided(values: &[f64], stride: usize, rows: usize, columns: usize) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice_with_stride(values, rows, columns, stride)
+}
+
+/// `scaled = lower D`, column-major of `rows` rows.
+fn scale_rows(lower: &[f64], stride: usize, pivots: &[f64], rows: usize, scaled: &mut [f64]) {
+    for ((target, source), &pivot) in scaled.chunks_exact_mut(rows).zip(lower.chunks(stride)).zip(pivots) {
+        for (value, &entry) in target.iter_mut().zip(source) {
+            *value = entry * pivot;
         }
     }
 }
@@ -193,67 +228,52 @@ fn subtract_product(target: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRe
     }
 }
 
-/// `target = left right`.
-fn product_into(target: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>) {
-    if is_heavy(target.nrows(), target.ncols(), left.ncols()) {
-        let half = target.nrows() / 2;
-        let (upper, lower) = target.split_at_row_mut(half);
-        let (upper_left, lower_left) = left.split_at_row(half);
-        join(|| product_into(upper, upper_left, right), || product_into(lower, lower_left, right));
-    } else {
-        matmul(target, Accum::Replace, left, right, 1.0, Par::Seq);
-    }
-}
-
-/// Subtracts the rows of `product` from their places in the target, on and below the diagonal.
-fn subtract_pieces(mut target: MatMut<'_, f64>, product: MatRef<'_, f64>, pieces: &[Piece], columns: usize) {
+/// Adds the rows of `product` to their places in the target, on and below the diagonal.
+fn add_pieces(target: &mut [f64], stride: usize, product: &[f64], rows: usize, pieces: &[Piece], columns: usize) {
     for (place, column) in pieces[..columns].iter().enumerate() {
         for offset in 0..column.len {
-            let source = product.col(column.source + offset).try_as_col_major().map(|c| c.as_slice());
-            let entries = target.as_mut().col_mut(column.target + offset).try_as_col_major_mut().map(|c| c.as_slice_mut());
-            let (Some(source), Some(entries)) = (source, entries) else { continue };
+            let source = &product[(column.source + offset) * rows..][..rows];
+            let entries = &mut target[(column.target + offset) * stride..][..stride];
             for row in &pieces[place..] {
                 let from = &source[row.source..row.source + row.len];
                 for (entry, &value) in entries[row.target..row.target + row.len].iter_mut().zip(from) {
-                    *entry -= value;
+                    *entry += value;
                 }
             }
         }
     }
 }
 
-/// Factorises the diagonal block of an updated panel and solves for its rows below. Leaves L below the diagonal, the
-/// pivots on it. Returns the column that broke down, if one did.
-pub(super) fn factorise(mut values: MatMut<'_, f64>, work: &mut Workspace) -> Result<(), usize> {
-    use faer::linalg::cholesky::ldlt::factor::LdltError;
-    let columns = values.ncols();
-    let (mut top, bottom) = values.as_mut().split_at_row_mut(columns);
-    let stack = MemStack::new(&mut work.stack);
-    let regularisation = LdltRegularization::default();
-    let params = Spec::<LdltParams, f64>::default();
-    match cholesky_in_place(top.as_mut(), regularisation, Par::Seq, stack, params) {
-        Ok(_) => {}
-        Err(LdltError::ZeroPivot { index }) => return Err(index),
+/// Factorises an updated panel: leaves L below the diagonal of its diagonal block, the pivots on it. The error is the
+/// column that broke down.
+pub(super) fn factorise(values: &mut [f64], supernode: &Supernode, work: &mut Workspace) -> Result<(), usize> {
+    let (stride, columns) = (supernode.rows, supernode.columns());
+    for first in (0..columns).step_by(PANEL_COLUMNS) {
+        let width = PANEL_COLUMNS.min(columns - first);
+        let panel = &mut values[first * stride + first..];
+        let rows = stride - first;
+        let scaled = &mut work.scaled[..];
+        let kernel = Factorisation { values: panel, stride, rows, columns: width, scaled };
+        work.arch.dispatch(kernel).map_err(|column| first + column)?;
+        if first + width < columns {
+            update_rest(values, supernode, first..first + width, work);
+        }
     }
-    solve_rows(top.as_ref(), bottom);
     Ok(())
 }
 
-/// `bottom = bottom L⁻ᵀ D⁻¹` with L and D of the diagonal block.
-fn solve_rows(top: MatRef<'_, f64>, bottom: MatMut<'_, f64>) {
-    let columns = top.ncols();
-    if is_heavy(bottom.nrows(), columns, columns) {
-        let half = bottom.nrows() / 2;
-        let (upper, lower) = bottom.split_at_row_mut(half);
-        join(|| solve_rows(top, upper), || solve_rows(top, lower));
-        return;
+/// Updates the columns of a panel behind `done` with those.
+fn update_rest(values: &mut [f64], supernode: &Supernode, done: std::ops::Range<usize>, work: &mut Workspace) {
+    let (stride, columns) = (supernode.rows, supernode.columns());
+    let (finished, rest) = values.split_at_mut(done.end * stride);
+    let pivots = &mut work.pivots[..done.len()];
+    for (pivot, column) in pivots.iter_mut().zip(done.clone()) {
+        *pivot = finished[column * (stride + 1)];
     }
-    let mut bottom = bottom;
-    solve_unit_lower_triangular_in_place(top, bottom.as_mut().transpose_mut(), Par::Seq);
-    for column in 0..columns {
-        let inverse = top[(column, column)].recip();
-        if let Some(entries) = bottom.as_mut().col_mut(column).try_as_col_major_mut() {
-            entries.as_slice_mut().iter_mut().for_each(|entry| *entry *= inverse);
-        }
-    }
+    let lower = &finished[done.start * stride + done.end..];
+    let left = columns - done.end;
+    scale_rows(lower, stride, pivots, left, &mut work.scaled);
+    let factor = MatRef::from_column_major_slice(&work.scaled[..left * done.len()], left, done.len()).transpose();
+    let target = strided_mut(rest, stride).subrows_mut(done.end, stride - done.end);
+    subtract_product(target, strided(lower, stride, stride - done.end, done.len()), factor);
 }

@@ -145,34 +145,32 @@ impl SparsePattern {
         }
     }
 
-    /// Largest sum of absolute values along a row.
-    ///
-    /// `sums` is scratch of length `n`.
-    pub(super) fn norm(&self, values: &[f64], sums: &mut [f64]) -> f64 {
+    /// Largest absolute value of every row (of every row and column, as the pattern is symmetric), and the largest sum
+    /// of absolute values along a row. `sums` is scratch of length `n`.
+    pub(super) fn measure(&self, values: &[f64], scale: &mut [f64], sums: &mut [f64]) -> f64 {
+        scale.fill(0.0);
         sums.fill(0.0);
+        let mirror = self.storage == Storage::Lower;
         for (col, span) in self.col_ptr.windows(2).enumerate() {
+            let (mut largest, mut sum) = (scale[col], 0.0);
             for (&row, &value) in self.row_idx[span[0]..span[1]].iter().zip(&values[span[0]..span[1]]) {
-                sums[row as usize] += value.abs();
-                if self.storage == Storage::Lower && row as usize != col {
-                    sums[col] += value.abs();
+                let (row, size) = (row as usize, value.abs());
+                sums[row] += size;
+                sum += size;
+                if size > scale[row] {
+                    scale[row] = size;
                 }
+                if size > largest {
+                    largest = size;
+                }
+            }
+            scale[col] = largest;
+            if mirror {
+                // The diagonal is the first entry and counted already.
+                sums[col] += sum - values[span[0]].abs();
             }
         }
         sums.iter().fold(0.0, |largest, &sum| largest.max(sum))
-    }
-
-    /// Largest absolute value of every row (of every row and column, as the pattern is symmetric).
-    pub(super) fn row_scale(&self, values: &[f64], scale: &mut [f64]) {
-        scale.fill(0.0);
-        for (col, span) in self.col_ptr.windows(2).enumerate() {
-            let mut largest = scale[col];
-            for (&row, &value) in self.row_idx[span[0]..span[1]].iter().zip(&values[span[0]..span[1]]) {
-                let size = value.abs();
-                largest = largest.max(size);
-                scale[row as usize] = scale[row as usize].max(size);
-            }
-            scale[col] = scale[col].max(largest);
-        }
     }
 
     pub(super) fn bytes(&self) -> usize {

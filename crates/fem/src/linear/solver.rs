@@ -118,8 +118,7 @@ impl LinearSolver {
         expect_length(Operand::Values, self.pattern.nnz(), values.len())?;
         check_finite(Operand::Values, values)?;
         self.values.copy_from_slice(values);
-        self.norm = self.pattern.norm(values, &mut self.residual);
-        self.pattern.row_scale(values, &mut self.scale);
+        self.norm = self.pattern.measure(values, &mut self.scale, &mut self.residual);
         let report = self.factorise_backend()?;
         self.factorised = true;
         Ok(report)
@@ -139,6 +138,9 @@ impl LinearSolver {
             }
             Backend::Sparse(sparse) => {
                 sparse.factorise(&self.values).map_err(|error| with_scale(error, &self.scale))?;
+                probe(&mut self.residual);
+                sparse.solve_in_place(&mut self.residual);
+                check_probe(&self.residual, self.norm, limit)?;
                 Ok(FactorReport { negative_pivots: None, smallest_pivot: None, smallest_pivot_dof: None })
             }
         }
@@ -316,6 +318,22 @@ fn check_pivots(
         }
     }
     Ok(FactorReport { negative_pivots: Some(negative), smallest_pivot: smallest, smallest_pivot_dof: smallest_dof })
+}
+
+/// A right-hand side of entries 1 and -1 without order, which has a part along any null vector.
+fn probe(rhs: &mut [f64]) {
+    for (number, entry) in rhs.iter_mut().enumerate() {
+        *entry = if (number as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0 { 1.0 } else { -1.0 };
+    }
+}
+
+/// The sparse LU hides its pivots; the solution for the probe bounds the smallest singular value from above by
+/// `1 / |x|`, which stands for the pivot.
+fn check_probe(solution: &[f64], scale: f64, limit: f64) -> Result<(), LinearError> {
+    let largest = (0..solution.len()).max_by(|&a, &b| solution[a].abs().total_cmp(&solution[b].abs()));
+    let Some(dof) = largest else { return Ok(()) };
+    let pivot = solution[dof].abs().recip();
+    if pivot > limit * scale { Ok(()) } else { Err(LinearError::Singular { dof, pivot, scale }) }
 }
 
 fn with_scale(error: LinearError, row_scale: &[f64]) -> LinearError {

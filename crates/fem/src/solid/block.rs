@@ -161,18 +161,8 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         trial: &mut [f64],
         out: &mut [ElementResult<N>],
     ) {
-        let stride = self.stride();
-        // One dispatch per run of elements: the kernel below is compiled for each instruction set.
-        pulp::Arch::new().dispatch(|| {
-            for (i, result) in out.iter_mut().enumerate() {
-                let new = &mut trial[i * stride..(i + 1) * stride];
-                if self.law.is_symmetric() {
-                    self.element::<true>(first + i, configuration, request, new, result);
-                } else {
-                    self.element::<false>(first + i, configuration, request, new, result);
-                }
-            }
-        });
+        // One dispatch per run of elements: everything below is inlined and compiled for each instruction set.
+        pulp::Arch::new().dispatch(Run { block: self, first, configuration, request, trial, out });
     }
 
     fn batch(&self, first: usize, c: &Configuration<'_>, request: Request, work: Work<'_, N>) {
@@ -187,6 +177,35 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
             );
         } else {
             self.elements(first, c, request, trial, results);
+        }
+    }
+}
+
+/// A run of elements, in a form that is inlined into code for the instruction set at hand.
+struct Run<'a, const N: usize, L, F> {
+    block: &'a SolidBlock<N, L, F>,
+    first: usize,
+    configuration: &'a Configuration<'a>,
+    request: Request,
+    trial: &'a mut [f64],
+    out: &'a mut [ElementResult<N>],
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> pulp::NullaryFnOnce for Run<'_, N, L, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { block, first, configuration, request, trial, out } = self;
+        let stride = block.stride();
+        let symmetric = block.law.is_symmetric();
+        for (i, result) in out.iter_mut().enumerate() {
+            let new = &mut trial[i * stride..(i + 1) * stride];
+            if symmetric {
+                block.element::<true>(first + i, configuration, request, new, result);
+            } else {
+                block.element::<false>(first + i, configuration, request, new, result);
+            }
         }
     }
 }

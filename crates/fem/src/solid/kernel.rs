@@ -112,10 +112,23 @@ fn first_elasticity(fr: &Matrix3<f64>, s: &Vector6<f64>, d: &Matrix6<f64>, volum
     a
 }
 
-/// First column lane of row node `a` that must be written when the matrix is symmetric: lanes are filled by fours.
+/// Lanes of a chunk: rows are worked in chunks of four nodes, which fill one 256-bit register.
+const LANES: usize = 4;
+
+/// `row += g . t` over the node lanes from the chunk of lane `first` on.
 #[inline(always)]
-const fn first_lane(a: usize, symmetric: bool) -> usize {
-    if symmetric { a / 4 * 4 } else { 0 }
+fn add_row<const N: usize>(g: [f64; 3], t: &NodeVector<N>, first: usize, row: &mut [f64; N]) {
+    let whole = N / LANES * LANES;
+    let mut lane = first / LANES * LANES;
+    while lane < whole {
+        for b in lane..lane + LANES {
+            row[b] += g[0] * t[0][b] + g[1] * t[1][b] + g[2] * t[2][b];
+        }
+        lane += LANES;
+    }
+    for b in whole..N {
+        row[b] += g[0] * t[0][b] + g[1] * t[1][b] + g[2] * t[2][b];
+    }
 }
 
 /// Adds the stiffness of a point: material tangent `d` and geometric part of the stress `s`. When `SYMMETRIC` only
@@ -140,11 +153,8 @@ pub fn add_stiffness<const N: usize, const SYMMETRIC: bool>(
                 }
             }
             for a in 0..N {
-                let (g0, g1, g2) = (g[0][a], g[1][a], g[2][a]);
-                let row = &mut out[k][a][m];
-                for b in first_lane(a, SYMMETRIC)..N {
-                    row[b] += g0 * t[0][b] + g1 * t[1][b] + g2 * t[2][b];
-                }
+                let first = if SYMMETRIC { a } else { 0 };
+                add_row([g[0][a], g[1][a], g[2][a]], &t, first, &mut out[k][a][m]);
             }
         }
     }

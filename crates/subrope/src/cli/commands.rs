@@ -15,9 +15,7 @@ use crate::{Error, mesh_file, point};
 pub(super) fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::New { list: true, .. } | Command::New { folder: None, .. } => print(templates::list().as_bytes()),
-        Command::New { folder: Some(folder), template, .. } => {
-            print(templates::write(&folder, &template)?.as_bytes())
-        }
+        Command::New { folder: Some(folder), template, .. } => print(templates::write(&folder, &template)?.as_bytes()),
         Command::Check { scene } => check(&scene),
         Command::Run { scene, out, threads } => run_scene(&scene, out.as_deref(), threads.map(usize::from)),
         Command::Point { file, output, differences } => run_point(&file, output.as_deref(), differences),

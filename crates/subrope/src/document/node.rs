@@ -80,9 +80,9 @@ impl Document {
         let span = 0..text.len();
         let value = table_value(table.get_ref(), &mut faults);
         let document = Self { name: name.into(), text: text.into(), root: Node { span, value } };
-        let problems = faults.into_iter().map(|(span, message)| {
-            document.problem_at(span.unwrap_or(0..0), ProblemKind::Syntax { message })
-        });
+        let problems = faults
+            .into_iter()
+            .map(|(span, message)| document.problem_at(span.unwrap_or(0..0), ProblemKind::Syntax { message }));
         document.reject(problems.collect())?;
         Ok(document)
     }

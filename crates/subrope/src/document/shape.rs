@@ -51,6 +51,8 @@ impl Place<'_> {
 impl<'a> Shape<'a> {
     fn report(&mut self, span: Range<usize>, kind: ProblemKind, about: &str) {
         let problem = self.document.problem_at(span, kind);
+        // Documentation is wrapped, advice is one line.
+        let about = about.replace('\n', " ");
         self.problems.push(if about.is_empty() { problem } else { problem.help(about) });
     }
 
@@ -190,16 +192,21 @@ impl<'a> Shape<'a> {
 
     fn unknown_key(&mut self, place: &Place<'a>, key: &str, span: &Range<usize>, schema: &'a Json) {
         let allowed: Vec<String> = property_names(schema).map(str::to_owned).collect();
-        let elsewhere = self.child_with(schema, key).map(|child| format!("`{key}` belongs to {}", place.at.at(child).table_name()));
+        let elsewhere =
+            self.child_with(schema, key).map(|child| format!("`{key}` belongs to {}", place.at.at(child).table_name()));
         let table = place.at.table_name();
-        self.report(span.clone(), ProblemKind::UnknownKey { key: key.to_owned(), table, allowed }, &elsewhere.unwrap_or_default());
+        self.report(
+            span.clone(),
+            ProblemKind::UnknownKey { key: key.to_owned(), table, allowed },
+            &elsewhere.unwrap_or_default(),
+        );
     }
 
     /// The sub-table that does have the key.
     fn child_with(&self, schema: &'a Json, key: &str) -> Option<&'a str> {
         let properties = schema.get("properties").and_then(Json::as_object)?;
         let has = |s: &&Json| s.get("properties").is_some_and(|p| p.get(key).is_some());
-        properties.iter().find(|(_, s)| self.alternatives(s).iter().any(|a| has(a))).map(|(name, _)| name.as_str())
+        properties.iter().find(|(_, s)| self.alternatives(s).iter().any(has)).map(|(name, _)| name.as_str())
     }
 
     fn missing_keys(&mut self, place: &Place<'a>, schema: &'a Json) {
@@ -222,8 +229,7 @@ impl<'a> Shape<'a> {
         match several.iter().max_by_key(known).filter(|s| known(s) > 0 || entries.is_empty()) {
             Some(schema) => self.table(place, entries, schema),
             None => {
-                let allowed: Vec<String> =
-                    several.iter().flat_map(|s| property_names(s)).map(str::to_owned).collect();
+                let allowed: Vec<String> = several.iter().flat_map(|s| property_names(s)).map(str::to_owned).collect();
                 for (key, span, _) in entries {
                     let kind = ProblemKind::UnknownKey {
                         key: key.clone(),

@@ -58,12 +58,17 @@ impl RopeModel {
         let steps = steps::steps(scene, &Program::new(scene), &mesh, &kinematics)?;
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
         let model = Model { kinematics, contributions };
-        Ok(Self { mesh, analysis: Analysis::new(model, newton(scene), SolverOptions::default(), threads), steps, ignored })
+        Ok(Self { mesh, analysis: Analysis::new(model, newton(scene), solver_options(), threads), steps, ignored })
     }
 }
 
 fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// Newton corrects what a solution lacks: twelve digits are more than it can use.
+fn solver_options() -> SolverOptions {
+    SolverOptions { target_residual: 1e-12, ..SolverOptions::default() }
 }
 
 fn newton(scene: &Scene) -> NewtonOptions {

@@ -35,18 +35,18 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn place(&self, step: Option<usize>) -> Place {
-        Place { path: Some(self.index), name: self.name.clone(), step }
+    fn place(&self, step: Option<usize>) -> Box<Place> {
+        Box::new(Place { file: self.file.to_owned(), path: Some(self.index), name: self.name.clone(), step })
     }
 
     fn entry(&self, step: Option<usize>) -> impl FnOnce(EntryFault) -> PointError {
-        let (file, place) = (self.file.to_owned(), self.place(step));
-        move |fault| PointError::Entry { file, place, fault }
+        let place = self.place(step);
+        move |fault| PointError::Entry { place, fault }
     }
 
     fn no_answer(&self, step: Option<usize>) -> impl FnOnce(subrope_material::LawError) -> PointError {
-        let (file, place) = (self.file.to_owned(), self.place(step));
-        move |source| PointError::Law { file, place, source }
+        let place = self.place(step);
+        move |source| PointError::Law { place, source }
     }
 
     fn law(&self, path: &PathRecord) -> Result<Box<dyn Law>, PointError> {
@@ -65,6 +65,9 @@ impl Run<'_> {
         let mut driver = PointDriver::new(law.as_ref(), frame);
         if differences {
             driver = driver.with_difference_tangent(DIFFERENCE_STEP);
+        }
+        if path.state0.len() != 8 {
+            return Err(self.entry(None)(EntryFault::State { found: path.state0.len() }));
         }
         let mut state = resized(&path.state0, law.state_len());
         for (index, step) in path.steps.iter_mut().enumerate() {

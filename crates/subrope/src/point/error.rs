@@ -23,33 +23,30 @@ pub enum PointError {
     #[diagnostic(transparent)]
     Invalid(Box<InvalidDocument>),
     /// A JSON file is not JSON, or an entry has the wrong type.
-    #[error("{file}{place}: {source}")]
-    #[diagnostic(help("layout: {{\"paths\": [{{\"name\", \"params\", \"frame\", \"state0\", \"steps\": [{{\"F\": 3x3}}]}}]}}"))]
+    #[error("{file}: {source}")]
+    #[diagnostic(help(
+        "layout: {{\"paths\": [{{\"name\", \"params\", \"frame\", \"state0\", \"steps\": [{{\"F\": 3x3}}]}}]}}"
+    ))]
     Json {
         /// The file.
         file: String,
-        /// The entry, empty for the whole file.
-        place: Place,
-        /// What is wrong.
+        /// What is wrong, with the entry, line and column.
+        #[source]
         source: serde_json::Error,
     },
     /// An entry of a JSON file cannot be used.
-    #[error("{file}{place}: {fault}")]
+    #[error("{place}: {fault}")]
     Entry {
-        /// The file.
-        file: String,
         /// The entry.
-        place: Place,
+        place: Box<Place>,
         /// What is wrong.
         fault: EntryFault,
     },
     /// The law gives no answer.
-    #[error("{file}{place}: the law gives no answer")]
+    #[error("{place}: the law gives no answer")]
     Law {
-        /// The file.
-        file: String,
         /// The path and the step.
-        place: Place,
+        place: Box<Place>,
         /// Why.
         source: LawError,
     },
@@ -58,6 +55,8 @@ pub enum PointError {
 /// An entry of a file of paths: indices of path and step from 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
+    /// The file.
+    pub file: String,
     /// Index of the path.
     pub path: Option<usize>,
     /// Its name.
@@ -68,6 +67,7 @@ pub struct Place {
 
 impl std::fmt::Display for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.file)?;
         if let Some(path) = self.path {
             write!(f, ": paths[{path}]")?;
         }

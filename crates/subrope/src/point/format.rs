@@ -1,4 +1,4 @@
-//! JSON on one line with a blank after every comma and colon.
+//! JSON on one line with a blank after every comma and colon, numbers as the shortest decimals.
 
 use std::io::{self, Write};
 
@@ -21,6 +21,18 @@ pub fn to_json(paths: &PathFile) -> Result<Vec<u8>, serde_json::Error> {
 struct Spaced;
 
 impl Formatter for Spaced {
+    fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        // Debug and LowerExp both give the shortest digits that read back to the same double.
+        let scientific = format!("{value:e}");
+        match scientific.split_once('e').map(|(digits, exponent)| (digits, exponent.parse::<i32>())) {
+            Some((digits, Ok(exponent))) if !(-4..16).contains(&exponent) && value != 0.0 => {
+                let sign = if exponent < 0 { '-' } else { '+' };
+                write!(writer, "{digits}e{sign}{:02}", exponent.abs())
+            }
+            _ => write!(writer, "{value:?}"),
+        }
+    }
+
     fn begin_array_value<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
         if first { Ok(()) } else { writer.write_all(b", ") }
     }

@@ -9,6 +9,7 @@
 mod compute;
 mod error;
 mod format;
+mod list;
 mod modes;
 mod parameters;
 mod record;
@@ -21,6 +22,7 @@ pub use compute::compute;
 pub use error::{EntryFault, Place, PointError};
 pub use format::to_json;
 pub use modes::displacement_gradient_of;
+pub use parameters::Params;
 pub use record::{PathFile, PathRecord, StepRecord, Tensor};
 pub use table::to_csv;
 pub use targets::{PathScene, Target};

@@ -21,17 +21,7 @@ pub fn displacement_gradient_of(modes: &[f64; 6]) -> Matrix3<f64> {
     // exp(c) cosh(d) - 1 without cancellation.
     let mean = compaction.exp_m1() + section * 2.0 * (0.5 * size).sinh().powi(2);
     let (along, across) = (shear * d1, shear * d2);
-    Matrix3::new(
-        elongation.exp_m1(),
-        stretch * g2,
-        stretch * g3,
-        0.0,
-        mean + along,
-        across,
-        0.0,
-        across,
-        mean - along,
-    )
+    Matrix3::new(elongation.exp_m1(), stretch * g2, stretch * g3, 0.0, mean + along, across, 0.0, across, mean - along)
 }
 
 #[cfg(test)]

@@ -1,14 +1,93 @@
 //! Parameters of the bundle law in the keys of the JSON form.
 
-use serde_json::{Map, Value};
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde::ser::{Serialize, Serializer};
+use serde_json::Value;
 use subrope_material::{BundleParameters, Compaction, Friction, Hardening, ModeParameters};
 
 use super::EntryFault;
 
+/// Parameters by name, in the order of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Params(Vec<(String, Value)>);
+
+impl Params {
+    /// The value of a parameter.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        self.0.iter().find(|(k, _)| k == key).map(|(_, value)| value)
+    }
+
+    /// The names.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(key, _)| key.as_str())
+    }
+}
+
+impl FromIterator<(String, Value)> for Params {
+    fn from_iter<I: IntoIterator<Item = (String, Value)>>(entries: I) -> Self {
+        Self(entries.into_iter().collect())
+    }
+}
+
+impl Serialize for Params {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+impl<'de> Deserialize<'de> for Params {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = Params;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object of parameters")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Params, A::Error> {
+        let mut entries = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            entries.push(entry);
+        }
+        Ok(Params(entries))
+    }
+}
+
 /// Keys that `params` may hold.
 const KEYS: [&str; 24] = [
-    "K_e", "K_ec", "w_e", "K_c", "nu", "comp_type", "K_p", "p_exp", "z_lock", "friction", "K_t", "tau_t0", "H_t",
-    "mu_t", "X_t", "H_inf_t", "kappa_s_t", "K_l", "tau_l0", "H_l", "mu_l", "X_l", "H_inf_l", "kappa_s_l",
+    "K_e",
+    "K_ec",
+    "w_e",
+    "K_c",
+    "nu",
+    "comp_type",
+    "K_p",
+    "p_exp",
+    "z_lock",
+    "friction",
+    "K_t",
+    "tau_t0",
+    "H_t",
+    "mu_t",
+    "X_t",
+    "H_inf_t",
+    "kappa_s_t",
+    "K_l",
+    "tau_l0",
+    "H_l",
+    "mu_l",
+    "X_l",
+    "H_inf_l",
+    "kappa_s_l",
 ];
 
 /// Keys of one mode: modulus, threshold, linear hardening, pressure, kinematic and saturating hardening.
@@ -18,9 +97,9 @@ const TRANSVERSE: ModeKeys = ModeKeys(["K_t", "tau_t0", "H_t", "mu_t", "X_t", "H
 const LONGITUDINAL: ModeKeys = ModeKeys(["K_l", "tau_l0", "H_l", "mu_l", "X_l", "H_inf_l", "kappa_s_l"]);
 
 /// Parameters of the law, from `params`.
-pub(super) fn read(params: &Map<String, Value>) -> Result<BundleParameters, EntryFault> {
-    if let Some(key) = params.keys().find(|k| !KEYS.contains(&k.as_str())) {
-        return Err(EntryFault::UnknownParameter { key: key.clone(), allowed: &KEYS });
+pub(super) fn read(params: &Params) -> Result<BundleParameters, EntryFault> {
+    if let Some(key) = params.keys().find(|k| !KEYS.contains(k)) {
+        return Err(EntryFault::UnknownParameter { key: key.to_owned(), allowed: &KEYS });
     }
     let friction = optional(params, "friction")?.unwrap_or(1.0) != 0.0;
     Ok(BundleParameters {
@@ -35,7 +114,7 @@ pub(super) fn read(params: &Map<String, Value>) -> Result<BundleParameters, Entr
     })
 }
 
-fn compaction(params: &Map<String, Value>) -> Result<Compaction, EntryFault> {
+fn compaction(params: &Params) -> Result<Compaction, EntryFault> {
     let key = "comp_type";
     let value = optional(params, key)?.unwrap_or(0.0);
     match value {
@@ -46,7 +125,7 @@ fn compaction(params: &Map<String, Value>) -> Result<Compaction, EntryFault> {
     }
 }
 
-fn mode(params: &Map<String, Value>, keys: &ModeKeys, slides: bool) -> Result<ModeParameters, EntryFault> {
+fn mode(params: &Params, keys: &ModeKeys, slides: bool) -> Result<ModeParameters, EntryFault> {
     let [k, tau, h, mu, x, h_inf, kappa_s] = keys.0;
     let k = required(params, k)?;
     if !slides {
@@ -64,11 +143,11 @@ fn mode(params: &Map<String, Value>, keys: &ModeKeys, slides: bool) -> Result<Mo
     Ok(ModeParameters::sliding(k, Friction { tau, hardening, x: x.unwrap_or(0.0), mu: mu.unwrap_or(0.0) }))
 }
 
-fn required(params: &Map<String, Value>, key: &'static str) -> Result<f64, EntryFault> {
+fn required(params: &Params, key: &'static str) -> Result<f64, EntryFault> {
     optional(params, key)?.ok_or(EntryFault::MissingParameter { key })
 }
 
-fn optional(params: &Map<String, Value>, key: &'static str) -> Result<Option<f64>, EntryFault> {
+fn optional(params: &Params, key: &'static str) -> Result<Option<f64>, EntryFault> {
     match params.get(key) {
         None => Ok(None),
         Some(Value::Bool(flag)) => Ok(Some(f64::from(u8::from(*flag)))),
@@ -77,7 +156,7 @@ fn optional(params: &Map<String, Value>, key: &'static str) -> Result<Option<f64
 }
 
 /// The keys that a bundle law is written with.
-pub(super) fn write(law: &BundleParameters) -> Map<String, Value> {
+pub(super) fn write(law: &BundleParameters) -> Params {
     let (comp_type, k_p, m, z_lock) = match law.compaction {
         Compaction::Quadratic => (0.0, None, None, None),
         Compaction::Power { k_p, m } => (1.0, Some(k_p), Some(m), None),

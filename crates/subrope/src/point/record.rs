@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::error::{EntryFault, Place, PointError};
+use super::error::PointError;
+use super::list;
+use super::parameters::Params;
 use crate::scene::Law;
 
 /// A second-order tensor by rows \[-\].
@@ -31,6 +33,7 @@ pub struct PathFile {
     #[serde(default = "text::conventions")]
     pub conventions: String,
     /// The paths.
+    #[serde(deserialize_with = "list::paths")]
     pub paths: Vec<PathRecord>,
     /// Other keys.
     #[serde(flatten)]
@@ -69,7 +72,7 @@ pub struct PathRecord {
     /// Parameters of the law: `K_e K_ec w_e K_c nu comp_type K_p p_exp z_lock`, and per mode
     /// `K_t tau_t0 H_t mu_t` (`_l` likewise), `friction`; optional `X_t`, `H_inf_t`, `kappa_s_t` (`_l` likewise).
     #[serde(default)]
-    pub params: Map<String, Value>,
+    pub params: Params,
     /// Columns e1, e2, e3, given by rows; the global frame when left out.
     #[serde(default = "identity")]
     pub frame: Tensor,
@@ -77,6 +80,7 @@ pub struct PathRecord {
     #[serde(default = "virgin")]
     pub state0: Vec<f64>,
     /// The steps.
+    #[serde(deserialize_with = "list::steps")]
     pub steps: Vec<StepRecord>,
     /// Other keys.
     #[serde(flatten)]
@@ -149,54 +153,7 @@ pub struct StepRecord {
     pub other: Map<String, Value>,
 }
 
-/// Reads the JSON form. Errors name the path and the step.
+/// Reads the JSON form. Errors name the path and the step, line and column.
 pub(super) fn parse(file: &str, text: &str) -> Result<PathFile, PointError> {
-    let json = |place: Place| move |source| PointError::Json { file: file.to_owned(), place: place.clone(), source };
-    let mut whole: Map<String, Value> = serde_json::from_str(text).map_err(json(Place::default()))?;
-    let listed = match whole.insert("paths".to_owned(), Value::Array(Vec::new())) {
-        Some(Value::Array(listed)) => listed,
-        Some(other) => return Err(json(Place::default())(serde::de::Error::custom(format!("`paths` is {}", kind(&other))))),
-        None => return Err(json(Place::default())(serde::de::Error::missing_field("paths"))),
-    };
-    let mut paths: PathFile = serde_json::from_value(Value::Object(whole)).map_err(json(Place::default()))?;
-    for (index, value) in listed.into_iter().enumerate() {
-        paths.paths.push(parse_path(file, index, value)?);
-    }
-    Ok(paths)
-}
-
-fn parse_path(file: &str, index: usize, mut value: Value) -> Result<PathRecord, PointError> {
-    let name = value.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
-    let place = |step| Place { path: Some(index), name: name.clone(), step };
-    let fault = |step: Option<usize>| {
-        let place = place(step);
-        move |source| PointError::Json { file: file.to_owned(), place, source }
-    };
-    let steps = match value.get_mut("steps").map(Value::take) {
-        Some(Value::Array(steps)) => steps,
-        _ => return Err(fault(None)(serde::de::Error::custom("the path needs a list `steps`"))),
-    };
-    if let Some(entry) = value.get_mut("steps") {
-        *entry = Value::Array(Vec::new());
-    }
-    let mut path: PathRecord = serde_json::from_value(value).map_err(fault(None))?;
-    for (step, value) in steps.into_iter().enumerate() {
-        path.steps.push(serde_json::from_value(value).map_err(fault(Some(step)))?);
-    }
-    if path.state0.len() != 8 {
-        let fault = EntryFault::State { found: path.state0.len() };
-        return Err(PointError::Entry { file: file.to_owned(), place: place(None), fault });
-    }
-    Ok(path)
-}
-
-fn kind(value: &Value) -> &'static str {
-    match value {
-        Value::Null => "null, not a list",
-        Value::Bool(_) => "true or false, not a list",
-        Value::Number(_) => "a number, not a list",
-        Value::String(_) => "a string, not a list",
-        Value::Array(_) => "a list",
-        Value::Object(_) => "an object, not a list",
-    }
+    serde_json::from_str(text).map_err(|source| PointError::Json { file: file.to_owned(), source })
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use subrope_material::StrainModes;
 
 use super::record::{PathFile, PathRecord, StepRecord, Tensor, text};
-use super::{PointError, displacement_gradient_of, parameters};
+use super::{Params, Place, PointError, displacement_gradient_of, parameters};
 use crate::document::{self, Document, Location, Problem, ProblemKind};
 use crate::law;
 use crate::scene::{Law, check_law};
@@ -133,10 +133,12 @@ impl PathScene {
         let mut steps = Vec::new();
         let mut standing = Standing::Modes([0.0; 6]);
         for target in std::iter::repeat_n(&self.path, self.cycles).flatten() {
-            standing = target.approach(standing, &frame, &mut steps).map_err(|source| PointError::Law {
-                file: name.to_owned(),
-                place: super::Place { path: Some(0), name: self.title.clone(), step: Some(steps.len()) },
-                source,
+            standing = target.approach(standing, &frame, &mut steps).map_err(|source| {
+                let (file, step) = (name.to_owned(), Some(steps.len()));
+                PointError::Law {
+                    place: Box::new(Place { file, path: Some(0), name: self.title.clone(), step }),
+                    source,
+                }
             })?;
         }
         let record = PathRecord {
@@ -161,12 +163,12 @@ impl PathScene {
     }
 
     /// The law's parameters in the keys of the JSON form; other laws in those of a scene.
-    fn params(&self) -> serde_json::Map<String, serde_json::Value> {
+    fn params(&self) -> Params {
         match &self.law {
             Law::Bundle(bundle) => parameters::write(&law::bundle_parameters(bundle)),
             other => match serde_json::to_value(other) {
-                Ok(serde_json::Value::Object(map)) => map,
-                _ => serde_json::Map::new(),
+                Ok(serde_json::Value::Object(map)) => map.into_iter().collect(),
+                _ => Params::default(),
             },
         }
     }

@@ -2,6 +2,7 @@
 
 mod columns;
 mod error;
+#[cfg(feature = "hdf5")]
 mod fields;
 mod findings;
 mod sections;

@@ -1,6 +1,6 @@
 //! One run with its open files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -20,6 +20,9 @@ use crate::scene::SceneFile;
 use super::fields::{self, FieldArray, Place};
 #[cfg(feature = "hdf5")]
 use subrope_io::{FieldSpec, Precision, Provenance, ResultWriter, WriterOptions};
+
+/// Name of the file with the fields.
+const RESULTS: &str = "results.vtkhdf";
 
 /// Files of a run and what it was asked.
 pub struct Session<'a> {
@@ -50,7 +53,7 @@ impl<'a> Session<'a> {
             .map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
         let files = RunFiles {
             folder: folder.to_path_buf(),
-            results: cfg!(feature = "hdf5").then(|| folder.join("results.vtkhdf")),
+            results: cfg!(feature = "hdf5").then(|| folder.join(RESULTS)),
             history: folder.join("history.csv"),
             summary: folder.join("summary.json"),
         };
@@ -141,7 +144,7 @@ impl Output {
             },
             deflate: (scene.output.compression > 0).then_some(scene.output.compression),
         };
-        let path = files.results.clone().unwrap_or_else(|| PathBuf::from("results.vtkhdf"));
+        let path = files.folder.join(RESULTS);
         let mut out = Self {
             history: HistoryWriter::create(&files.history, &columns::columns(&model.analysis))?,
             results: ResultWriter::create(&path, &model.mesh.mesh, &specs, &provenance, options)?,

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::strand::Hand;
 
-/// A mesh from an Abaqus input file (`*NODE`, `*ELEMENT`, `*NSET`, `*ELSET`, `*SURFACE`, orientations); the set `ALL` holds all nodes. Lengths are mm.
+/// A mesh from an Abaqus input file (`*NODE`, `*ELEMENT`, `*NSET`, `*ELSET`, `*SURFACE`, orientations); the node set
+/// `ALL` holds all nodes. Lengths are mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Deck {
@@ -17,8 +18,8 @@ pub struct Deck {
     pub file: PathBuf,
     /// Where the fibre directions come from: "deck" (its orientations), { helix = {..} } or { parallel = [x, y, z] }.
     pub fibres: Fibres,
-    /// Other names for node sets and surfaces of the deck: `END_A = "BOTTOM_NODES"` lets the scene say END_A. The deck's
-    /// own names stay.
+    /// Other names for node sets and surfaces of the deck: `END_A = "BOTTOM_NODES"` lets the scene say END_A. The
+    /// deck's own names stay.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sets: BTreeMap<String, String>,
 }

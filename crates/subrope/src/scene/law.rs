@@ -46,7 +46,8 @@ impl Law {
     }
 }
 
-/// Rope-yarn bundle: `W = W_e(I_elong) + W_c(I_comp + nu I_elong) + K_t/2 |I_dist - I_dist^P|^2 + K_l/2 |I_sh - I_sh^P|^2`
+/// Rope-yarn bundle:
+/// `W = W_e(I_elong) + W_c(I_comp + nu I_elong) + K_t/2 |I_dist - I_dist^P|^2 + K_l/2 |I_sh - I_sh^P|^2`,
 /// with transverse (t) and longitudinal (l) sliding where
 /// `|q - X I^P| = tau + H kappa + mu p`, or with `H_inf (1 - exp(-kappa/kappa_s))` in place of `H kappa`.
 #[allow(non_snake_case)] // the symbols of the law

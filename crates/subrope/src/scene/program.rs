@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::Scene;
 use super::expand::expand;
 use super::prescription::{Component, Prescription, Ramp};
 use super::step::{Distribution, Incrementation, Step};
-use super::Scene;
 
 /// All steps of a scene in full. Lengths in mm, forces in N, moments in N mm, tractions in MPa, times in s, rotations
 /// in **radians**.
@@ -184,7 +184,10 @@ impl Program {
                 duration: step.duration,
                 increments: step.increments.resolve(),
                 loads: load_step(&step, &mut loads),
-                motions: motions.into_iter().map(|((target, component), path)| Motion { target, component, path }).collect(),
+                motions: motions
+                    .into_iter()
+                    .map(|((target, component), path)| Motion { target, component, path })
+                    .collect(),
             });
         }
         Self { steps }
@@ -196,9 +199,8 @@ type Motions = BTreeMap<Key, MotionPath>;
 
 fn initial_standing(scene: &Scene) -> BTreeMap<Key, Standing> {
     let held = || Standing { free: false, value: Some(0.0), arc: Some(0.0) };
-    let points = scene.end.iter().flat_map(|end| {
-        Component::ALL.into_iter().map(|c| (MotionTarget::Point(end.name.clone()), c))
-    });
+    let points =
+        scene.end.iter().flat_map(|end| Component::ALL.into_iter().map(|c| (MotionTarget::Point(end.name.clone()), c)));
     let constraints = scene.constraint.iter().flat_map(|constraint| {
         let listed = Component::ALL.into_iter().zip(constraint.components.values()).filter(|(_, v)| v.is_some());
         listed.map(|(c, _)| (MotionTarget::Constraint(constraint.name.clone()), c))
@@ -218,7 +220,8 @@ fn first_constraints(scene: &Scene, motions: &mut Motions) {
         for (component, value) in Component::ALL.into_iter().zip(constraint.components.values()) {
             if let Some(value) = value {
                 let path = Path { start: Some(0.0), knots: vec![[1.0, value]] };
-                motions.insert((MotionTarget::Constraint(constraint.name.clone()), component), MotionPath::Linear(path));
+                motions
+                    .insert((MotionTarget::Constraint(constraint.name.clone()), component), MotionPath::Linear(path));
             }
         }
     }
@@ -261,7 +264,9 @@ fn settle(motions: &Motions, standing: &mut BTreeMap<Key, Standing>) {
     for (key, path) in motions {
         let now = match path {
             MotionPath::Free => Standing { free: true, value: None, arc: None },
-            MotionPath::Linear(path) => Standing { free: false, value: path.end(), arc: held_arc(path, standing.get(key)) },
+            MotionPath::Linear(path) => {
+                Standing { free: false, value: path.end(), arc: held_arc(path, standing.get(key)) }
+            }
             MotionPath::Arc { length, angle } => {
                 let arc = angle.end();
                 Standing { free: false, value: arc.map(|a| length * approach(a)), arc }

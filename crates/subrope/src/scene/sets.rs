@@ -43,8 +43,9 @@ mod tests {
 
     #[test]
     fn names_are_found() {
-        let deck = "*HEADING\nx\n*NODE, NSET=all_nodes\n1, 0, 0, 0\n** *NSET, NSET=NOT\n*element, type=C3D8, elset = STRAND\n\
-                    *NSET, NSET=END_A, GENERATE\n*SURFACE, NAME=\"Top face\", TYPE=ELEMENT\n";
+        let deck = "*HEADING\nx\n*NODE, NSET=all_nodes\n1, 0, 0, 0\n** *NSET, NSET=NOT\n\
+                    *element, type=C3D8, elset = STRAND\n*NSET, NSET=END_A, GENERATE\n\
+                    *SURFACE, NAME=\"Top face\", TYPE=ELEMENT\n";
         let names = DeckNames::scan(deck);
         assert_eq!(names.sets.iter().map(String::as_str).collect::<Vec<_>>(), ["END_A", "all_nodes"]);
         assert!(names.surfaces.contains("Top face"));

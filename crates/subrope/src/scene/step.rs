@@ -171,7 +171,8 @@ pub enum BendEnds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tension {
-    /// Elongation at the end of the step as a fraction of the length \[-\]; or pairs [fraction of the step, elongation].
+    /// Elongation at the end of the step as a fraction of the length \[-\]; or pairs [fraction of the step,
+    /// elongation].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elongation: Option<Ramp>,
     /// Dead force along z at the end of the step \[N\]; or pairs [fraction of the step, N].

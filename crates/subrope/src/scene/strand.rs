@@ -76,8 +76,8 @@ pub enum Origin {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StrandMesh {
-    /// Cells along each side of the core \[-\], even, so that nodes lie on the axis; the section's outline has 4 times as
-    /// many edges.
+    /// Cells along each side of the core \[-\], even, so that nodes lie on the axis; the outline has 4 times as many
+    /// edges.
     #[schemars(extend("minimum" = 2, "multipleOf" = 2))]
     pub core: usize,
     /// Rings of cells around the core \[-\].

@@ -61,10 +61,7 @@ fn friction(law: &BundleLaw, document: &Document) -> Vec<Problem> {
             problems.push(missing(document, key, "threshold of sliding (MPa); friction = false makes the law elastic"));
         }
     }
-    let hardening = [
-        ("t", law.H_t, law.H_inf_t, law.kappa_s_t),
-        ("l", law.H_l, law.H_inf_l, law.kappa_s_l),
-    ];
+    let hardening = [("t", law.H_t, law.H_inf_t, law.kappa_s_t), ("l", law.H_l, law.H_inf_l, law.kappa_s_l)];
     for (mode, linear, saturating, slip) in hardening {
         if slip.is_none() && saturating > 0.0 {
             let help = format!("slip over which H_inf_{mode} develops");

@@ -95,8 +95,8 @@ impl Checker<'_> {
             element.formulation.word(),
             law.word()
         );
-        let help = "choose [element] formulation = \"hex8\", \"hex8_mean_volume\" or \"hex27\"; laws with a fibre term: \
-                    bundle, charmetant, fibre_reinforced";
+        let help = "choose [element] formulation = \"hex8\", \"hex8_mean_volume\" or \"hex27\"; laws with a fibre \
+                    term: bundle, charmetant, fibre_reinforced";
         self.inconsistent(&at, cause, help);
     }
 }

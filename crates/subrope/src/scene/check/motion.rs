@@ -108,7 +108,11 @@ impl Checker<'_> {
             self.out_of_range(&own, "elongation", value, "greater than -1 (a fraction of the length)");
         }
         if length.is_none() && self.scene.strand.is_none() {
-            self.missing(at, "length", "length that the elongation refers to (mm); only a generated strand has its own");
+            self.missing(
+                at,
+                "length",
+                "length that the elongation refers to (mm); only a generated strand has its own",
+            );
         }
     }
 
@@ -145,7 +149,11 @@ impl Checker<'_> {
             }
             (None, Some(constraint)) => self.prescribed_constraint(at, constraint, entry),
             (Some(_), Some(_)) => {
-                self.inconsistent(&at.at("constraint"), "`point` and `constraint` exclude each other", "use two tables");
+                self.inconsistent(
+                    &at.at("constraint"),
+                    "`point` and `constraint` exclude each other",
+                    "use two tables",
+                );
             }
             (None, None) => self.missing(at, "point", "the name of an [[end]], or `constraint`"),
         }
@@ -155,14 +163,22 @@ impl Checker<'_> {
         let allowed: Vec<String> = self.scene.constraint.iter().map(|c| c.name.clone()).collect();
         self.known(&at.at("constraint"), "constraint", name, &allowed, "");
         let Some(own) = self.scene.constraint.iter().find(|c| c.name == name) else { return };
-        let listed: Vec<_> =
-            Component::ALL.into_iter().zip(own.components.values()).filter(|(_, v)| v.is_some()).map(|(c, _)| c).collect();
+        let listed: Vec<_> = Component::ALL
+            .into_iter()
+            .zip(own.components.values())
+            .filter(|(_, v)| v.is_some())
+            .map(|(c, _)| c)
+            .collect();
         for (component, prescription) in Component::ALL.into_iter().zip(entry.components()) {
             let Some(prescription) = prescription else { continue };
             let own = at.at(component.key());
             if !listed.contains(&component) {
                 let allowed = listed.iter().map(|c| c.key().to_owned()).collect();
-                let kind = ProblemKind::UnknownName { what: "component of the constraint", found: component.key().to_owned(), allowed };
+                let kind = ProblemKind::UnknownName {
+                    what: "component of the constraint",
+                    found: component.key().to_owned(),
+                    allowed,
+                };
                 self.report(&own, kind, "");
             } else if prescription.is_free() {
                 self.inconsistent(&own, "a component of a constraint cannot be freed", "give a value or a history");

@@ -50,7 +50,11 @@ impl Checker<'_> {
     pub(super) fn ramp(&mut self, at: &Location, ramp: &Ramp) {
         let Ramp::Path(knots) = ramp else { return };
         if knots.is_empty() {
-            self.inconsistent(at, "the history is empty", "pairs [fraction of the step, value], for example [[0.5, 1.0], [1.0, 0.0]]");
+            self.inconsistent(
+                at,
+                "the history is empty",
+                "pairs [fraction of the step, value], for example [[0.5, 1.0], [1.0, 0.0]]",
+            );
         }
         let mut last = 0.0;
         for (index, [fraction, _]) in knots.iter().enumerate() {
@@ -103,7 +107,8 @@ impl Checker<'_> {
                 if ramp.is_some() && !free(&target, component) {
                     let (load, motion) = (component.force_key(), component.key());
                     let cause = format!("`{load}` on \"{}\" does nothing: `{motion}` is prescribed", force.point);
-                    let help = format!("add [[step.prescribe]] with point = \"{}\" and {motion} = \"free\"", force.point);
+                    let help =
+                        format!("add [[step.prescribe]] with point = \"{}\" and {motion} = \"free\"", force.point);
                     self.inconsistent(&at.at("force").at(index).at(load), cause, &help);
                 }
             }
@@ -121,12 +126,15 @@ impl Checker<'_> {
     ) {
         for load in &resolved.loads {
             let LoadTarget::Point(point) = &load.target else { continue };
-            let given = step.force.iter().any(|f| f.point == *point && f.components()[load.component.index()].is_some());
+            let given =
+                step.force.iter().any(|f| f.point == *point && f.components()[load.component.index()].is_some());
             let acts = load.path.start.is_some_and(|v| v != 0.0) || load.path.end().is_some_and(|v| v != 0.0);
             if !given && acts && !free(&MotionTarget::Point(point.clone()), load.component) {
                 let (force, motion) = (load.component.force_key(), load.component.key());
-                let cause = format!("the step prescribes `{motion}` of \"{point}\" while `{force}` of an earlier step acts");
-                let help = format!("end the force in the step before: [[step.force]] point = \"{point}\", {force} = 0.0");
+                let cause =
+                    format!("the step prescribes `{motion}` of \"{point}\" while `{force}` of an earlier step acts");
+                let help =
+                    format!("end the force in the step before: [[step.force]] point = \"{point}\", {force} = 0.0");
                 self.inconsistent(at, cause, &help);
             }
         }

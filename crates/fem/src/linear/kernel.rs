@@ -1,0 +1,301 @@
+//! Register-blocked kernels on panels that fit the cache, in the vector width of the processor.
+//!
+//! Panels are column-major with a stride. Columns are taken eight at a time: eight accumulators of one vector of rows
+//! each run through the depth of the product without packing, which for the panels of a slender body is faster than
+//! a general matrix product.
+
+use pulp::{Simd, WithSimd};
+
+/// Columns taken at a time.
+pub(super) const BLOCK: usize = 8;
+
+/// Rows `source..source + len` of an updating panel that land on rows `target..` of another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) source: usize,
+    pub(super) target: usize,
+    pub(super) len: usize,
+}
+
+/// `target -= L D Lᵀ` over the rows of `pieces`, on and below the diagonal of the target.
+pub(super) struct Product<'a> {
+    pub(super) target: &'a mut [f64],
+    pub(super) target_stride: usize,
+    /// The updating panel from the first of its rows that matter.
+    pub(super) lower: &'a [f64],
+    pub(super) stride: usize,
+    /// D.
+    pub(super) pivots: &'a [f64],
+    pub(super) pieces: &'a [Piece],
+    /// Leading pieces that are columns of the target.
+    pub(super) columns: usize,
+    /// Buffer of [`BLOCK`] entries per pivot.
+    pub(super) scaled: &'a mut [f64],
+}
+
+/// LDLᵀ of a panel: leaves L below the diagonal of its leading block, D on it. The result is the column that broke
+/// down, if one did.
+pub(super) struct Factorisation<'a> {
+    /// The panel from its first diagonal entry.
+    pub(super) values: &'a mut [f64],
+    pub(super) stride: usize,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    /// Buffer of [`BLOCK`] entries per column.
+    pub(super) scaled: &'a mut [f64],
+}
+
+/// Widest block of a fixed size within `left` columns.
+#[inline(always)]
+fn width(left: usize) -> usize {
+    match left {
+        8.. => 8,
+        4.. => 4,
+        2.. => 2,
+        _ => 1,
+    }
+}
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        for place in 0..self.columns {
+            let len = self.pieces[place].len;
+            let mut first = 0;
+            while first < len {
+                let width = width(len - first);
+                match width {
+                    8 => self.block::<S, 8>(simd, place, first),
+                    4 => self.block::<S, 4>(simd, place, first),
+                    2 => self.block::<S, 2>(simd, place, first),
+                    _ => self.block::<S, 1>(simd, place, first),
+                }
+                first += width;
+            }
+        }
+    }
+}
+
+impl Product<'_> {
+    /// Updates the `W` columns from `first` on of the piece at `place`.
+    #[inline(always)]
+    fn block<S: Simd, const W: usize>(&mut self, simd: S, place: usize, first: usize) {
+        let column = self.pieces[place];
+        let depth = self.pivots.len();
+        scale::<W>(&self.lower[column.source + first..], self.stride, self.pivots, self.scaled);
+        let factors = &self.scaled.as_chunks::<W>().0[..depth];
+        for (number, row) in self.pieces[place..].iter().enumerate() {
+            let skip = if number == 0 { first } else { 0 };
+            let offset = (column.target + first) * self.target_stride + row.target + skip;
+            let lower = &self.lower[row.source + skip..];
+            let target = &mut self.target[offset..];
+            subtract(simd, target, self.target_stride, lower, self.stride, row.len - skip, factors);
+        }
+    }
+}
+
+/// `scaled[k][c] = lower[c, k] pivots[k]` of `W` rows.
+#[inline(always)]
+fn scale<const W: usize>(lower: &[f64], stride: usize, pivots: &[f64], scaled: &mut [f64]) {
+    let blocks = scaled.as_chunks_mut::<W>().0.iter_mut();
+    for ((block, column), &pivot) in blocks.zip(lower.chunks(stride)).zip(pivots) {
+        for (entry, &value) in block.iter_mut().zip(&column[..W]) {
+            *entry = value * pivot;
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd, const FULL: bool>(simd: S, slice: &[f64]) -> S::f64s {
+    if FULL { S::as_simd_f64s(slice).0[0] } else { simd.partial_load_f64s(slice) }
+}
+
+#[inline(always)]
+fn store<S: Simd, const FULL: bool>(simd: S, slice: &mut [f64], value: S::f64s) {
+    if FULL {
+        S::as_mut_simd_f64s(slice).0[0] = value;
+    } else {
+        simd.partial_store_f64s(slice, value);
+    }
+}
+
+/// `target[r, c] -= Σ_k lower[r, k] factors[k][c]` of `rows` rows.
+#[inline(always)]
+fn subtract<S: Simd, const W: usize>(
+    simd: S,
+    target: &mut [f64],
+    target_stride: usize,
+    lower: &[f64],
+    stride: usize,
+    rows: usize,
+    factors: &[[f64; W]],
+) {
+    let lanes = S::F64_LANES;
+    let full = rows - rows % lanes;
+    for row in (0..full).step_by(lanes) {
+        subtract_rows::<S, W, true>(simd, target, target_stride, lower, stride, row..row + lanes, factors);
+    }
+    if full < rows {
+        subtract_rows::<S, W, false>(simd, target, target_stride, lower, stride, full..rows, factors);
+    }
+}
+
+#[inline(always)]
+fn subtract_rows<S: Simd, const W: usize, const FULL: bool>(
+    simd: S,
+    target: &mut [f64],
+    target_stride: usize,
+    lower: &[f64],
+    stride: usize,
+    rows: std::ops::Range<usize>,
+    factors: &[[f64; W]],
+) {
+    let mut sums = load_rows::<S, W, FULL>(simd, target, target_stride, rows.clone());
+    accumulate::<S, W, FULL>(simd, &mut sums, lower, stride, rows.clone(), factors);
+    for (c, &sum) in sums.iter().enumerate() {
+        store::<S, FULL>(simd, &mut target[c * target_stride + rows.start..c * target_stride + rows.end], sum);
+    }
+}
+
+#[inline(always)]
+fn load_rows<S: Simd, const W: usize, const FULL: bool>(
+    simd: S,
+    values: &[f64],
+    stride: usize,
+    rows: std::ops::Range<usize>,
+) -> [S::f64s; W] {
+    let mut loaded = [simd.splat_f64s(0.0); W];
+    for (c, entry) in loaded.iter_mut().enumerate() {
+        *entry = load::<S, FULL>(simd, &values[c * stride + rows.start..c * stride + rows.end]);
+    }
+    loaded
+}
+
+#[inline(always)]
+fn accumulate<S: Simd, const W: usize, const FULL: bool>(
+    simd: S,
+    sums: &mut [S::f64s; W],
+    lower: &[f64],
+    stride: usize,
+    rows: std::ops::Range<usize>,
+    factors: &[[f64; W]],
+) {
+    let mut local = *sums;
+    for (column, factor) in lower.chunks(stride).zip(factors) {
+        let entry = load::<S, FULL>(simd, &column[rows.start..rows.end]);
+        for (sum, &factor) in local.iter_mut().zip(factor) {
+            *sum = simd.negate_mul_add_f64s(entry, simd.splat_f64s(factor), *sum);
+        }
+    }
+    *sums = local;
+}
+
+impl WithSimd for Factorisation<'_> {
+    type Output = Result<(), usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+        let mut first = 0;
+        while first < self.columns {
+            let width = width(self.columns - first);
+            match width {
+                8 => self.block::<S, 8>(simd, first)?,
+                4 => self.block::<S, 4>(simd, first)?,
+                2 => self.block::<S, 2>(simd, first)?,
+                _ => self.block::<S, 1>(simd, first)?,
+            }
+            first += width;
+        }
+        Ok(())
+    }
+}
+
+impl Factorisation<'_> {
+    /// Updates the `W` columns from `first` on with those before and factorises them.
+    #[inline(always)]
+    fn block<S: Simd, const W: usize>(&mut self, simd: S, first: usize) -> Result<(), usize> {
+        let stride = self.stride;
+        let (left, own) = self.values.split_at_mut(first * stride);
+        let blocks = self.scaled.as_chunks_mut::<W>().0.iter_mut();
+        for (k, (block, column)) in blocks.zip(left.chunks_exact(stride)).enumerate() {
+            for (entry, &value) in block.iter_mut().zip(&column[first..first + W]) {
+                *entry = value * column[k];
+            }
+        }
+        let factors = &self.scaled.as_chunks::<W>().0[..first];
+        if first > 0 {
+            subtract(simd, &mut own[first..], stride, &left[first..], stride, W, factors);
+        }
+        let corner = Corner::<W>::factorise(&mut own[first..], stride).map_err(|column| first + column)?;
+        let (lanes, begin) = (S::F64_LANES, first + W);
+        let full = self.rows - (self.rows - begin) % lanes;
+        for row in (begin..full).step_by(lanes) {
+            corner.rows::<S, true>(simd, (left, own, stride), row..row + lanes, factors);
+        }
+        if full < self.rows {
+            corner.rows::<S, false>(simd, (left, own, stride), full..self.rows, factors);
+        }
+        Ok(())
+    }
+}
+
+/// Factors of a diagonal block: `lower[c][r]` below the diagonal and the reciprocal pivots.
+struct Corner<const W: usize> {
+    lower: [[f64; W]; W],
+    inverse: [f64; W],
+}
+
+impl<const W: usize> Corner<W> {
+    /// Factorises the `W` x `W` block at the start of `values` in place.
+    #[inline(always)]
+    fn factorise(values: &mut [f64], stride: usize) -> Result<Self, usize> {
+        let mut corner = Self { lower: [[0.0; W]; W], inverse: [0.0; W] };
+        let mut block = [[0.0; W]; W];
+        for (c, column) in block.iter_mut().enumerate() {
+            column.copy_from_slice(&values[c * stride..c * stride + W]);
+        }
+        for c in 0..W {
+            let pivot = block[c][c];
+            if pivot == 0.0 || !pivot.is_finite() {
+                values[c * stride + c] = pivot;
+                return Err(c);
+            }
+            corner.inverse[c] = pivot.recip();
+            for r in c + 1..W {
+                corner.lower[c][r] = block[c][r] * corner.inverse[c];
+            }
+            for other in c + 1..W {
+                let factor = block[c][other];
+                for r in other..W {
+                    block[other][r] -= corner.lower[c][r] * factor;
+                }
+            }
+            values[c * stride + c] = pivot;
+            values[c * stride + c + 1..c * stride + W].copy_from_slice(&corner.lower[c][c + 1..]);
+        }
+        Ok(corner)
+    }
+
+    /// Updates rows below the block with the columns `left` of it and solves them for L.
+    #[inline(always)]
+    fn rows<S: Simd, const FULL: bool>(
+        &self,
+        simd: S,
+        (left, own, stride): (&[f64], &mut [f64], usize),
+        rows: std::ops::Range<usize>,
+        factors: &[[f64; W]],
+    ) {
+        let mut sums = load_rows::<S, W, FULL>(simd, own, stride, rows.clone());
+        accumulate::<S, W, FULL>(simd, &mut sums, left, stride, rows.clone(), factors);
+        for c in 0..W {
+            let solved = sums[c];
+            for (sum, &factor) in sums[c + 1..].iter_mut().zip(&self.lower[c][c + 1..]) {
+                *sum = simd.negate_mul_add_f64s(solved, simd.splat_f64s(factor), *sum);
+            }
+            let entries = &mut own[c * stride + rows.start..c * stride + rows.end];
+            store::<S, FULL>(simd, entries, simd.mul_f64s(solved, simd.splat_f64s(self.inverse[c])));
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Blocks of bricks by the name of their formulation.
+
+use nalgebra::Matrix3;
+use subrope_fem::solid::{Full, MeanElongation, MeanVolume, SolidBlock, SolidFields, SolidMesh};
+use subrope_fem::{Contribution, FemError};
+use subrope_geometry::{CellKind, Hex8, Hex27, Mesh};
+use subrope_material::Law;
+
+/// A brick and what it averages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Brick {
+    /// Eight nodes, full integration.
+    Plain,
+    /// Eight nodes, mean volume ratio.
+    MeanVolume,
+    /// Eight nodes, mean fibre elongation.
+    MeanElongation,
+    /// 27 nodes, full integration.
+    Quadratic,
+}
+
+impl Brick {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Plain, Self::MeanVolume, Self::MeanElongation, Self::Quadratic];
+
+    /// Kind of cell.
+    #[must_use]
+    pub fn kind(self) -> CellKind {
+        if self == Self::Quadratic { CellKind::Hex27 } else { CellKind::Hex8 }
+    }
+
+    /// Whether a law can fill it.
+    #[must_use]
+    pub fn takes(self, law: &dyn Law) -> bool {
+        self != Self::MeanElongation || law.has_fibre_term()
+    }
+}
+
+/// A block of bricks over a whole mesh.
+///
+/// # Errors
+/// As [`SolidBlock::new`].
+pub fn brick<L: Law + 'static>(
+    kind: Brick,
+    mesh: &Mesh,
+    frames: &[Matrix3<f64>],
+    law: L,
+) -> Result<Box<dyn Contribution>, FemError> {
+    let solid = SolidMesh { positions: &mesh.points, cells: &mesh.cells, labels: &mesh.cell_labels, frames };
+    Ok(match kind {
+        Brick::Plain => Box::new(SolidBlock::<8, L, Full>::new::<Hex8>(&solid, law)?),
+        Brick::MeanVolume => Box::new(SolidBlock::<8, L, MeanVolume>::new::<Hex8>(&solid, law)?),
+        Brick::MeanElongation => Box::new(SolidBlock::<8, L, MeanElongation>::new::<Hex8>(&solid, law)?),
+        Brick::Quadratic => Box::new(SolidBlock::<27, L, Full>::new::<Hex27>(&solid, law)?),
+    })
+}
+
+/// The same frame at every integration point.
+#[must_use]
+pub fn constant_frames(mesh: &Mesh, frame: Matrix3<f64>) -> Vec<Matrix3<f64>> {
+    vec![frame; mesh.cell_count() * mesh.kind.points()]
+}
+
+/// The integration points of the solid among some contributions.
+#[must_use]
+pub fn fields_of(contributions: &[Box<dyn Contribution>]) -> &dyn SolidFields {
+    contributions.iter().find_map(|c| c.fields()).unwrap()
+}

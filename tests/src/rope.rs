@@ -1,0 +1,54 @@
+//! Scenes run in memory.
+
+use std::path::Path;
+
+use subrope::model::{ModelError, RopeModel};
+use subrope::scene::Scene;
+use subrope_fem::FemError;
+
+use crate::problem::{Recorder, Row};
+
+/// A scene that ran.
+pub struct Run {
+    /// The model in its last state.
+    pub model: RopeModel,
+    /// One row per increment, steps one after another.
+    pub rows: Vec<Row>,
+    /// Causes of failed attempts.
+    pub failures: Vec<String>,
+}
+
+impl Run {
+    /// Index of a reference point.
+    #[must_use]
+    pub fn point(&self, name: &str) -> usize {
+        self.model.analysis.model().kinematics.point_index(name).unwrap()
+    }
+}
+
+/// Reads a scene that must be correct.
+#[must_use]
+pub fn scene(text: &str) -> Scene {
+    Scene::from_toml("test.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// Builds and runs all steps of a scene on so many threads.
+///
+/// # Errors
+/// What the model answers; what the run answers.
+pub fn try_run(text: &str, deck: Option<&Path>, threads: usize) -> Result<Result<Run, FemError>, ModelError> {
+    let mut model = RopeModel::from_scene(&scene(text), deck, Some(threads))?;
+    let mut recorder = Recorder::default();
+    for step in model.steps.clone() {
+        if let Err(error) = model.analysis.run_step(&step, &mut recorder) {
+            return Ok(Err(error));
+        }
+    }
+    Ok(Ok(Run { model, rows: recorder.rows, failures: recorder.failures }))
+}
+
+/// Runs a scene that must succeed, on one thread.
+#[must_use]
+pub fn run_scene(text: &str, deck: Option<&Path>) -> Run {
+    try_run(text, deck, 1).unwrap_or_else(|e| panic!("{e}")).unwrap_or_else(|e| panic!("{e}"))
+}
