@@ -25,6 +25,12 @@ pub fn matrix_close(what: &str, value: &Matrix3<f64>, reference: &Matrix3<f64>, 
     assert!(error <= tolerance, "{what}: {value} instead of {reference}: off by {error:.3e}, allowed {tolerance:e}");
 }
 
+/// Numbers with two digits, for a log.
+#[must_use]
+pub fn scientific(values: &[f64]) -> String {
+    values.iter().map(|v| format!("{v:.1e}")).collect::<Vec<_>>().join(" ")
+}
+
 /// Largest deviations by name.
 #[derive(Clone, Debug, Default)]
 pub struct Worst(BTreeMap<&'static str, f64>);

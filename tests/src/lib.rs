@@ -11,7 +11,7 @@ mod problem;
 mod rope;
 
 pub use bricks::{Brick, brick, constant_frames, fields_of};
-pub use compare::{Worst, close, matrix_close, relative};
+pub use compare::{Worst, close, matrix_close, relative, scientific};
 pub use dense::Dense;
 pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity};
 pub use problem::{Problem, Recorder, Row, StepBuilder};

@@ -315,7 +315,7 @@ fn stiffness_is_derivative<L: Law + 'static>(kind: Brick, name: &str, law: impl 
     // Loading goes on in some points and turns back in others.
     let q = q + noise.vector(n, 0.03);
     let exact = dense.stiffness(&q);
-    let differences = dense.differenced_stiffness(&q, 1e-4);
+    let differences = dense.differenced_stiffness(&q, 2e-6);
     let error = (&exact - &differences).amax() / exact.amax();
     println!("{kind:?}, {name}: {error:.1e}");
     assert!(error < 1e-7, "{kind:?}, {name}: stiffness off by {error:e}");
@@ -344,7 +344,7 @@ fn forces_are_slopes<L: Law + 'static>(kind: Brick, name: &str, law: impl Fn() -
             moved[c] += step;
             dense.evaluate(&moved, Request::Residual).unwrap().1.potential
         };
-        let h = 2e-4;
+        let h = 1e-5;
         let slope = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
         worst = worst.max((slope - residual[c]).abs() / residual.amax());
     }
@@ -409,7 +409,7 @@ fn stiffness_of_ties_is_the_derivative_of_the_residual() {
         for section in [SectionKind::Rigid, SectionKind::Radial] {
             let (mut dense, q) = tied(kind, section, law());
             let exact = dense.stiffness(&q);
-            let differences = dense.differenced_stiffness(&q, 1e-4);
+            let differences = dense.differenced_stiffness(&q, 2e-6);
             let error = (&exact - &differences).amax() / exact.amax();
             println!("{kind:?}, {section:?}, {name}: {error:.1e}");
             assert!(error < 1e-7, "{kind:?}, {section:?}, {name}: stiffness off by {error:e}");
@@ -444,7 +444,7 @@ fn reaction_moments_are_slopes_of_the_energy() {
                     }
                     dense.evaluate(&moved, Request::Residual).unwrap().1.potential
                 };
-                let h = 2e-4;
+                let h = 1e-5;
                 let slope = |energy: &mut dyn FnMut(usize, f64) -> f64, k: usize| {
                     let (near, far) = (energy(k, h) - energy(k, -h), energy(k, 2.0 * h) - energy(k, -2.0 * h));
                     (8.0 * near - far) / (12.0 * h)
@@ -483,7 +483,7 @@ fn rigid_motion<L: Law + 'static>(kind: Brick, name: &str, law: impl Fn() -> L) 
     assert!(residual.amax() < 1e-13 * stiffness, "{kind:?}, {name}: forces {:e}", residual.amax() / stiffness);
     assert!(energies.stored.abs() < 1e-24 * stiffness, "{kind:?}, {name}: energy {:e}", energies.stored);
     // Rigid motion of a deformed body: the forces turn, the energies stay.
-    let u = Noise(9).vector(n, 0.02);
+    let u = Noise(9).vector(n, 0.01);
     let (forces, energies) = dense.evaluate(&u, Request::Residual).unwrap();
     let (turned, same) = dense.evaluate(&moved(&u), Request::Residual).unwrap();
     let mut worst = Worst::default();

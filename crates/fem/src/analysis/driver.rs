@@ -168,7 +168,7 @@ impl Analysis {
     }
 
     fn run_step_here(&mut self, step: &Step, observer: &mut dyn Observer) -> Result<(), FemError> {
-        self.prepare(step)?;
+        self.analyse(step)?;
         // A new step turns elsewhere: nothing to continue.
         self.last_length = 0.0;
         self.step_start.copy_from_slice(&self.q);
@@ -214,8 +214,12 @@ impl Analysis {
         }
     }
 
-    /// Makes the system of a step unless the last one serves.
-    fn prepare(&mut self, step: &Step) -> Result<(), FemError> {
+    /// Makes the system of a step unless the last one serves: numbering, pattern, symbolic factorisation. A run does it
+    /// by itself; alone it tells what a step will cost.
+    ///
+    /// # Errors
+    /// [`FemError::RigidModes`], [`FemError::Linear`].
+    pub fn analyse(&mut self, step: &Step) -> Result<(), FemError> {
         let mut prescribed = vec![false; self.q.len()];
         for p in &step.prescriptions {
             prescribed[p.coordinate as usize] = true;

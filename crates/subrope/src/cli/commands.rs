@@ -6,8 +6,8 @@ use super::arguments::Command;
 use super::output::{print, write};
 use super::terminal::Terminal;
 use super::{interrupt, templates};
-use crate::model::RopeModel;
-use crate::run::RunOptions;
+use crate::check::check_scene;
+use crate::run::{RunOptions, RunOutcome};
 use crate::scene::{Scene, SceneFile};
 use crate::{Error, mesh_file, point};
 
@@ -27,14 +27,12 @@ pub(super) fn run(command: Command) -> Result<(), Error> {
 fn check(path: &Path) -> Result<(), Error> {
     let file = SceneFile::load(path)?;
     print(summary(&file).as_bytes())?;
-    let model = RopeModel::new(&file, None)?;
-    let mut text = String::new();
-    for ignored in &model.ignored {
+    let report = check_scene(&file)?;
+    let mut text = report.to_string();
+    for ignored in &report.ignored {
         text += &format!("  note     {}:{}: *{} is not read\n", ignored.file.display(), ignored.line, ignored.keyword);
     }
-    let (nodes, elements) = (model.mesh.mesh.point_count(), model.mesh.mesh.cell_count());
-    text += &format!("  model    {nodes} nodes, {elements} elements: ready to run\n");
-    print(text.as_bytes())
+    print((text + "  ready to run\n").as_bytes())
 }
 
 /// What a scene holds, in a few lines.
@@ -67,7 +65,16 @@ fn run_scene(path: &Path, out: Option<&Path>, threads: Option<usize>) -> Result<
     let stop = interrupt::flag();
     let options = RunOptions { folder: out, threads, interrupt: Some(&stop) };
     let outcome = crate::run::run_scene(path, options, &mut Terminal::new())?;
-    print(format!("results in {}\n", outcome.files.folder.display()).as_bytes())
+    print(closing(&outcome).as_bytes())
+}
+
+/// One sentence of physics, and where the files are.
+fn closing(outcome: &RunOutcome) -> String {
+    let files = &outcome.files;
+    let names = [files.results.as_ref(), Some(&files.history), Some(&files.summary)];
+    let names: Vec<_> =
+        names.into_iter().flatten().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned()).collect();
+    format!("{}\n{} are in {}\n", outcome.summary.sentence(), names.join(", "), files.folder.display())
 }
 
 fn run_point(path: &Path, output: Option<&Path>, differences: bool) -> Result<(), Error> {

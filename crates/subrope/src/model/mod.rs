@@ -10,7 +10,7 @@ pub use error::ModelError;
 pub use mesh::MeshModel;
 
 use nalgebra::Vector3;
-use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Step, Viscous};
+use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind};
 use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError};
@@ -59,6 +59,16 @@ impl RopeModel {
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
         let model = Model { kinematics, contributions };
         Ok(Self { mesh, analysis: Analysis::new(model, newton(scene), solver_options(), threads), steps, ignored })
+    }
+}
+
+impl RopeModel {
+    /// Runs all steps without writing anything; the state is then in `analysis`.
+    ///
+    /// # Errors
+    /// [`FemError`], as [`Analysis::run_step`].
+    pub fn solve(&mut self) -> Result<(), FemError> {
+        self.steps.iter().try_for_each(|step| self.analysis.run_step(step, &mut Silent))
     }
 }
 

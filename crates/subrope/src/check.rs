@@ -1,0 +1,158 @@
+//! What a scene amounts to before anything is solved: counts, mesh quality, yarn angles, cost and memory.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+use subrope_geometry::quality::{AngleStatistics, MeshQuality, fibre_angles, mesh_quality};
+use subrope_io::Ignored;
+
+use crate::Error;
+use crate::model::{ModelError, RopeModel};
+use crate::run::RunError;
+use crate::scene::SceneFile;
+
+/// What a scene amounts to.
+#[derive(Clone, Debug)]
+pub struct CheckReport {
+    /// Elements.
+    pub elements: usize,
+    /// Nodes.
+    pub nodes: usize,
+    /// Integration points.
+    pub points: usize,
+    /// Worst cells and volume.
+    pub quality: Option<MeshQuality>,
+    /// Volume of the smooth strand \[mm^3\], for a generated one.
+    pub exact_volume: Option<f64>,
+    /// Angles between yarns and the z axis.
+    pub angles: Option<AngleStatistics>,
+    /// Size of the first step's system.
+    pub system: SystemSize,
+    /// Bytes of state per integration point, committed and trial; 0 for an elastic law.
+    pub state_bytes_per_point: usize,
+    /// Estimate of the largest memory of a run \[MB\].
+    pub memory_mb: f64,
+    /// Keywords of the deck that were not read.
+    pub ignored: Vec<Ignored>,
+}
+
+/// Size of a sparse system.
+#[derive(Clone, Debug)]
+pub struct SystemSize {
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Stored entries of the matrix.
+    pub entries: usize,
+    /// Entries of the factor.
+    pub factor_entries: f64,
+    /// Operations of a factorisation.
+    pub factor_flops: f64,
+    /// Ordering.
+    pub ordering: String,
+    /// Whether the matrix is symmetric (LDL^T) or not (LU).
+    pub symmetric: bool,
+}
+
+/// Memory of the program itself and of small things \[bytes\].
+const BASE_BYTES: f64 = 15e6;
+
+/// Builds the model of a scene and analyses its first step, without solving.
+///
+/// # Errors
+/// As a run before its first increment: [`Error::Scene`], [`Error::Model`], and [`Error::Run`] for rigid motions that
+/// nothing holds.
+pub fn check_scene(file: &SceneFile) -> Result<CheckReport, Error> {
+    let mut model = RopeModel::new(file, None)?;
+    let solver = |cause| RunError::Solver { cause: Box::new(cause), kept: None };
+    if let Some(step) = model.steps.first() {
+        model.analysis.analyse(step).map_err(solver)?;
+    }
+    Ok(report(model).map_err(Error::Model)?)
+}
+
+fn report(model: RopeModel) -> Result<CheckReport, ModelError> {
+    let mesh = &model.mesh.mesh;
+    let fields = model.analysis.model().contributions.iter().find_map(|c| c.fields());
+    let state_bytes_per_point = fields.map_or(0, |f| f.state_bytes_per_point());
+    let points = model.mesh.frames.len();
+    let (system, solver_bytes) = system_size(&model);
+    let per_element = points / mesh.cell_count().max(1);
+    let nodes = mesh.kind.nodes();
+    // Gradients, frame and volume of a point; positions in the matrix and connectivity of an element.
+    let point_bytes = (8 * (3 * nodes + 10) + state_bytes_per_point) as f64;
+    let element_bytes = (4 * 9 * nodes * (nodes + 1) / 2 + 4 * nodes + 72 * per_element) as f64;
+    let matrix_bytes = 20.0 * system.entries as f64;
+    let memory = BASE_BYTES
+        + points as f64 * point_bytes
+        + mesh.cell_count() as f64 * element_bytes
+        + matrix_bytes
+        + solver_bytes
+        + mesh.point_count() as f64 * 400.0;
+    Ok(CheckReport {
+        elements: mesh.cell_count(),
+        nodes: mesh.point_count(),
+        points,
+        quality: mesh_quality(mesh)?,
+        exact_volume: model.mesh.strand.as_ref().map(subrope_geometry::Strand::volume),
+        angles: (points > 0).then(|| fibre_angles(mesh, &model.mesh.frames, &Vector3::z())).transpose()?,
+        system,
+        state_bytes_per_point,
+        memory_mb: memory / 1e6,
+        ignored: model.ignored,
+    })
+}
+
+fn system_size(model: &RopeModel) -> (SystemSize, f64) {
+    let system = model.analysis.system();
+    let analysis = system.map(subrope_fem::System::analysis);
+    let size = SystemSize {
+        unknowns: system.map_or(0, |s| s.equations().len()),
+        entries: system.map_or(0, subrope_fem::System::entries),
+        factor_entries: analysis.map_or(0.0, |a| a.fill.nonzeros),
+        factor_flops: analysis.map_or(0.0, |a| a.fill.flops),
+        ordering: analysis.map_or_else(String::new, |a| a.ordering.name().to_string()),
+        symmetric: system.is_none_or(subrope_fem::System::is_symmetric),
+    };
+    (size, analysis.map_or(0.0, |a| a.bytes as f64))
+}
+
+impl fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "  size     {} elements, {} nodes, {} integration points", self.elements, self.nodes, self.points)?;
+        if let Some(q) = &self.quality {
+            writeln!(
+                f,
+                "  quality  least scaled Jacobian {:.3} (element {}), largest aspect ratio {:.2} (element {})",
+                q.least_scaled_jacobian.value,
+                q.least_scaled_jacobian.cell_label,
+                q.largest_aspect_ratio.value,
+                q.largest_aspect_ratio.cell_label
+            )?;
+            match self.exact_volume {
+                Some(exact) => {
+                    let off = 100.0 * (q.volume / exact - 1.0);
+                    writeln!(f, "  volume   {:.2} mm^3, {off:+.2} % from the smooth strand", q.volume)?;
+                }
+                None => writeln!(f, "  volume   {:.2} mm^3", q.volume)?,
+            }
+        }
+        if let Some(a) = &self.angles {
+            let [least, mean, greatest] = [a.least, a.mean, a.greatest].map(f64::to_degrees);
+            writeln!(f, "  yarns    {least:.2} to {greatest:.2} degrees from the z axis, mean {mean:.2}")?;
+        }
+        let s = &self.system;
+        let (matrix, method) = if s.symmetric { ("symmetric", "LDL^T") } else { ("unsymmetric", "LU") };
+        writeln!(
+            f,
+            "  system   {} unknowns, {matrix}: {method}, ordering {}, {:.2} GFLOP per factorisation",
+            s.unknowns,
+            s.ordering,
+            s.factor_flops / 1e9
+        )?;
+        match self.state_bytes_per_point {
+            0 => writeln!(f, "  state    none: the law is elastic")?,
+            bytes => writeln!(f, "  state    {bytes} bytes per integration point")?,
+        }
+        writeln!(f, "  memory   about {:.0} MB", self.memory_mb)
+    }
+}
