@@ -382,7 +382,7 @@ fn cut_increments_go_on() {
 #[test]
 fn newton_converges_quadratically() {
     for formulation in ["hex8", "hex8_mean_volume", "hex8_mean_elongation", "hex27"] {
-        for (name, law, constant) in [("elastic", ELASTIC, 50.0), ("friction", FRICTION, 50.0), ("pressure", PRESSURE, 50.0)] {
+        for (name, law, constant) in [("elastic", ELASTIC, 100.0), ("friction", FRICTION, 200.0), ("pressure", PRESSURE, 200.0)] {
             let run = bent(formulation, law, 5);
             let mut worst = 0.0_f64;
             for row in &run.rows {

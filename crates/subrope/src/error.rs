@@ -98,7 +98,11 @@ impl Error {
                 let mut text = format!("error: {other}");
                 let mut cause = std::error::Error::source(other);
                 while let Some(inner) = cause {
-                    text += &format!("\n  because: {inner}");
+                    let reason = inner.to_string();
+                    // Many messages end with their cause already.
+                    if !text.contains(&reason) {
+                        text += &format!("\n  because: {reason}");
+                    }
                     cause = inner.source();
                 }
                 other.help().into_iter().for_each(|help| text += &format!("\n  help: {help}"));

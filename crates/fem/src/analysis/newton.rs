@@ -34,6 +34,7 @@ impl Analysis {
         let outcome = self.iterate(&mut work, attempt, record);
         self.totals.iterations += record.iterations;
         if outcome.is_ok() {
+            self.totals.unstable_increments += usize::from(record.negative_pivots.is_some_and(|n| n > 0));
             self.commit(&mut work, attempt);
         }
         self.work = work;

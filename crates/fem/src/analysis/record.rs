@@ -56,6 +56,8 @@ pub struct Totals {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Converged increments whose last tangent had negative pivots.
+    pub unstable_increments: usize,
 }
 
 impl Totals {

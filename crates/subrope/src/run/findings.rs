@@ -19,9 +19,9 @@ use super::sections::{SectionShape, rotation_vector, section_shapes};
 pub struct Findings {
     /// Mean curvature: rotation of one end against the other over the length \[1/mm\].
     pub mean_curvature_per_mm: f64,
-    /// Zones of high curvature, one per half of the strand, lowest first.
+    /// Zones of high curvature, lowest first: maxima above 1.5 times the mean, a diameter apart.
     pub curvature_zones: Vec<Zone>,
-    /// Whether the two zones mirror each other: |z1 + z2| (about the middle) over the length \[-\].
+    /// Whether the zones mirror each other: |sum of their z| about the middle over the length \[-\].
     pub zone_asymmetry: f64,
     /// Largest displacement of a section's centroid out of the plane of bending \[mm\].
     pub out_of_plane_mm: f64,
@@ -105,10 +105,10 @@ impl Findings {
         let axis = transverse_part.normalize();
         let mean = transverse_part.norm() / length;
         let middle = 0.5 * (first.z + last.z);
-        let zones = zones(&sections, &curvature, mean, middle);
+        let radius = mesh_radius(mesh);
+        let zones = zones(&sections, &curvature, mean, middle, radius);
         let fields = analysis.model().contributions.iter().find_map(|c| c.fields());
         let side = Vector3::z().cross(&axis);
-        let radius = mesh_radius(mesh);
         let mode = |m| fields.and_then(|f| mode_finding(f, points, m, &side, radius));
         let (transverse, longitudinal) = (mode(Mode::Transverse), mode(Mode::Longitudinal));
         Some(Self {
@@ -128,7 +128,7 @@ impl Findings {
     }
 }
 
-/// Curvature vectors between neighbouring sections, in the frame of the lower one \[1/mm\].
+/// Middle and bending curvature \[1/mm\] between neighbouring sections, without twist.
 fn curvatures(sections: &[SectionShape]) -> Vec<(f64, f64)> {
     sections
         .windows(2)
@@ -140,27 +140,25 @@ fn curvatures(sections: &[SectionShape]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Sum of the rotations from section to section \[rad\]: no limit at half a turn.
+/// Sum of the spatial rotations from section to section \[rad\]: in plane bending all turn about one axis, and there is no
+/// limit at half a turn.
 fn bend_vector(sections: &[SectionShape]) -> Vector3<f64> {
-    sections
-        .windows(2)
-        .map(|pair| {
-            let spatial = rotation_vector(&(pair[1].rotation * pair[0].rotation.transpose()));
-            // In the plane of bending all increments turn about the same spatial axis.
-            spatial
-        })
-        .sum()
+    sections.windows(2).map(|pair| rotation_vector(&(pair[1].rotation * pair[0].rotation.transpose()))).sum()
 }
 
-/// The section of highest curvature in each half.
-fn zones(sections: &[SectionShape], curvature: &[(f64, f64)], mean: f64, middle: f64) -> Vec<Zone> {
-    let half = |upper: bool| {
-        let inside = curvature.iter().filter(move |(z, _)| (*z > middle) == upper);
-        let (z, value) = inside.max_by(|a, b| a.1.total_cmp(&b.1))?;
+/// Curvature over the mean one from which a maximum counts as a zone.
+const ZONE_RATIO: f64 = 1.5;
+
+/// Local maxima of the curvature, each the largest within a diameter of the strand.
+fn zones(sections: &[SectionShape], curvature: &[(f64, f64)], mean: f64, middle: f64, radius: f64) -> Vec<Zone> {
+    let largest_nearby =
+        |z: f64, value: f64| curvature.iter().all(|(other, c)| (other - z).abs() > 2.0 * radius || *c <= value);
+    let peaks = curvature.iter().filter(|(z, value)| *value > ZONE_RATIO * mean && largest_nearby(*z, *value));
+    let zone = |(z, value): &(f64, f64)| {
         let near = sections.iter().min_by(|a, b| (a.z - z).abs().total_cmp(&(b.z - z).abs()))?;
         Some(Zone { z_mm: z - middle, curvature_ratio: value / mean, ovality: near.ovality })
     };
-    [half(false), half(true)].into_iter().flatten().collect()
+    peaks.filter_map(zone).collect()
 }
 
 fn mesh_radius(mesh: &Mesh) -> f64 {

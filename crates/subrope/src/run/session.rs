@@ -77,7 +77,7 @@ impl<'a> Session<'a> {
     ) -> Result<RunOutcome, Error> {
         let Self { file, files, output, started } = self;
         let count = model.steps.len();
-        let mut watch = Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0 };
+        let mut watch = Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0, stable: true };
         let mut outcome = Ok(());
         for (index, step) in model.steps.iter().enumerate() {
             let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
@@ -217,6 +217,8 @@ struct Watch<'a> {
     failure: Option<IoError>,
     attempt_start: Instant,
     cutbacks: usize,
+    /// Whether the last converged tangent had no negative pivot.
+    stable: bool,
 }
 
 impl Watch<'_> {
@@ -231,6 +233,19 @@ impl Watch<'_> {
     fn end_step(&mut self, analysis: &Analysis) -> Result<(), FemError> {
         let result = self.output.end_step(analysis);
         self.keep(result)
+    }
+
+    /// Warns when the branch that is followed becomes unstable.
+    fn tell_stability(&mut self, record: &IncrementRecord) {
+        let negative = record.negative_pivots.unwrap_or(0);
+        if negative > 0 && self.stable {
+            self.observer.on_warning(&format!(
+                "from increment {} on the tangent has {negative} negative pivot(s): a limit or bifurcation point was \
+                 passed, and the unstable branch is followed (history.csv, negative_pivots)",
+                record.increment
+            ));
+        }
+        self.stable = negative == 0;
     }
 
     fn tell(&mut self, record: &IncrementRecord, outcome: Outcome) {
@@ -257,6 +272,7 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
         self.cutbacks = 0;
         self.keep(result)?;
         self.tell(record, Outcome::Converged);
+        self.tell_stability(record);
         let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
         Ok(if stop { Control::Stop } else { Control::Continue })
     }

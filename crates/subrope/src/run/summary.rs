@@ -132,6 +132,8 @@ pub struct CountSummary {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Converged increments whose tangent has negative pivots: unstable equilibria.
+    pub unstable_increments: usize,
 }
 
 /// Wall-clock time.
@@ -179,14 +181,17 @@ impl Summary {
             parts.push(format!("{name} carries {} N and {} N mm", number(force), number(moment)));
         }
         let slid = e.dissipated_transverse_mj + e.dissipated_longitudinal_mj;
-        let energy = format!(
-            "of {} mJ put in, {} mJ are stored and {} mJ lost to sliding between rope-yarns ({} across, {} along them)",
-            number(e.external_work_mj),
-            number(e.stored_mj),
-            number(slid),
-            number(e.dissipated_transverse_mj),
-            number(e.dissipated_longitudinal_mj),
-        );
+        let (work, stored) = (number(e.external_work_mj), number(e.stored_mj));
+        let energy = if slid > 0.0 {
+            let (across, along) = (number(e.dissipated_transverse_mj), number(e.dissipated_longitudinal_mj));
+            let slid = number(slid);
+            format!(
+                "of {work} mJ put in, {stored} mJ are stored and {slid} mJ lost to sliding between rope-yarns ({across} \
+                 across, {along} along them)"
+            )
+        } else {
+            format!("of {work} mJ put in, {stored} mJ are stored and nothing is lost to sliding")
+        };
         parts.push(energy);
         format!("At {} s: {}; energy error {:.1e}.", number(self.time_s), parts.join("; "), e.energy_error)
     }
@@ -258,6 +263,7 @@ fn counts(model: &RopeModel) -> CountSummary {
         iterations: t.iterations,
         cutbacks: t.cutbacks,
         factorisations: t.factorisations,
+        unstable_increments: t.unstable_increments,
     }
 }
 
