@@ -50,7 +50,8 @@ fn laws(c: &mut Criterion) {
     let inputs = gradients(1024, 0.05);
     let mut group = c.benchmark_group("law with tangent");
     group.throughput(Throughput::Elements(inputs.len() as u64));
-    for (name, law) in [("sticking", bundle(1e6, 0.0)), ("sliding", bundle(0.1, 0.0)), ("sliding, pressure", bundle(0.1, 0.2))]
+    for (name, law) in
+        [("sticking", bundle(1e6, 0.0)), ("sliding", bundle(0.1, 0.0)), ("sliding, pressure", bundle(0.1, 0.2))]
     {
         let Ok(law) = law else { continue };
         let old = vec![0.0; law.state_len()];

@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 use subrope::model::RopeModel;
 use subrope::scene::Scene;
+use subrope_fem::Contribution;
 use subrope_fem::analysis::Model;
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind};
 use subrope_fem::solid::{Formulation, SolidBlock, SolidMesh};
-use subrope_fem::Contribution;
 use subrope_geometry::{Hex8, Mesh, Strand, fibre_frames};
 use subrope_material::{
     BundleLaw, BundleParameters, Compaction, EngineeringConstants, Friction, Law, LawError, ModeParameters, PointInput,
@@ -79,8 +79,7 @@ pub fn block<L: Law + 'static, F: Formulation<8>>(
 ) -> Result<(Mesh, SolidBlock<8, L, F>), Box<dyn std::error::Error>> {
     let mesh = strand.mesh()?;
     let frames = fibre_frames(&mesh, &strand.fibres())?;
-    let solid =
-        SolidMesh { positions: &mesh.points, cells: &mesh.cells, labels: &mesh.cell_labels, frames: &frames };
+    let solid = SolidMesh { positions: &mesh.points, cells: &mesh.cells, labels: &mesh.cell_labels, frames: &frames };
     let block = SolidBlock::new::<Hex8>(&solid, law)?;
     Ok((mesh, block))
 }

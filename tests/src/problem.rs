@@ -46,13 +46,8 @@ impl Problem {
     /// A step to fill.
     #[must_use]
     pub fn step(&self, increments: Increments) -> StepBuilder<'_> {
-        let step = Step {
-            name: "step".into(),
-            duration: 1.0,
-            prescriptions: Vec::new(),
-            loads: Vec::new(),
-            increments,
-        };
+        let step =
+            Step { name: "step".into(), duration: 1.0, prescriptions: Vec::new(), loads: Vec::new(), increments };
         StepBuilder { kinematics: &self.analysis.model().kinematics, step }
     }
 

@@ -43,9 +43,8 @@ fn frame() -> Matrix3<f64> {
 }
 
 fn bundle(mu: [f64; 2], x: [f64; 2], compaction: Compaction) -> BundleLaw {
-    let mode = |k, tau, h, x, mu| {
-        ModeParameters::sliding(k, Friction { tau, hardening: Hardening::Linear { h }, x, mu })
-    };
+    let mode =
+        |k, tau, h, x, mu| ModeParameters::sliding(k, Friction { tau, hardening: Hardening::Linear { h }, x, mu });
     BundleLaw::new(BundleParameters {
         k_e: 650.0,
         k_ec: 65.0,
@@ -157,11 +156,7 @@ macro_rules! for_all {
 // ---------------------------------------------------------------------------------------------------------- patch test
 
 /// Runs the patch with the outer nodes moved by `motion`; answers nodes, first Piola stresses and energy per volume.
-fn patch<L: Law + 'static>(
-    kind: Brick,
-    law: L,
-    motion: impl Fn(&Vector3<f64>) -> Vector3<f64>,
-) -> (Mesh, Problem) {
+fn patch<L: Law + 'static>(kind: Brick, law: L, motion: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> (Mesh, Problem) {
     let mesh = mesh_of(kind, &patch_cube());
     let outside = |p: &Vector3<f64>| p.iter().any(|x| x.abs() < 1e-12 || (x - 1.0).abs() < 1e-12);
     let solid = brick(kind, &mesh, &constant_frames(&mesh, frame()), law).unwrap();
@@ -218,7 +213,15 @@ fn linear_patch() {
 fn finite_patch() {
     let f = Matrix3::new(1.3, 0.2, -0.1, 0.15, 0.9, 0.25, -0.05, 0.1, 1.1);
     let piola = Matrix3::new(
-        0.4365671, 0.13925838, -0.06327044, 0.12587002, 0.13482707, 0.15596436, -0.05596436, 0.12519915, 0.29786166,
+        0.4365671,
+        0.13925838,
+        -0.06327044,
+        0.12587002,
+        0.13482707,
+        0.15596436,
+        -0.05596436,
+        0.12519915,
+        0.29786166,
     );
     let energy = 0.14019847012063;
     for kind in [Brick::Plain, Brick::MeanVolume, Brick::Quadratic] {
@@ -624,7 +627,9 @@ fn deviation(a: &[f64], b: &[f64]) -> f64 {
         r.map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max) / size
     };
     // Forces and moments together, each energy for itself, displacements together.
-    [part(0..12), part(12..13), part(13..14), part(14..15), part(15..16), part(16..a.len())].into_iter().fold(0.0, f64::max)
+    [part(0..12), part(12..13), part(13..14), part(14..15), part(15..16), part(16..a.len())]
+        .into_iter()
+        .fold(0.0, f64::max)
 }
 
 #[test]

@@ -38,7 +38,8 @@ fn law(params: &Value) -> String {
     if number(params, "friction") == 0.0 {
         return text + "friction = false\n";
     }
-    let pairs = [("tau_t", "tau_t0"), ("tau_l", "tau_l0"), ("H_t", "H_t"), ("H_l", "H_l"), ("mu_t", "mu_t"), ("mu_l", "mu_l")];
+    let pairs =
+        [("tau_t", "tau_t0"), ("tau_l", "tau_l0"), ("H_t", "H_t"), ("H_l", "H_l"), ("mu_t", "mu_t"), ("mu_l", "mu_l")];
     pairs.iter().for_each(|(key, name)| put(key, name));
     text
 }

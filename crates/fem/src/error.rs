@@ -46,7 +46,9 @@ pub enum FemError {
         tolerance: f64,
     },
     /// The increments became too short.
-    #[error("step {step}, {fraction:.6} of it done: the increment fell below {minimum:e} of the step; last cause: {cause}")]
+    #[error(
+        "step {step}, {fraction:.6} of it done: the increment fell below {minimum:e} of the step; last cause: {cause}"
+    )]
     IncrementTooShort {
         /// Name of the step.
         step: String,
@@ -58,7 +60,9 @@ pub enum FemError {
         cause: Box<FemError>,
     },
     /// A fixed increment failed.
-    #[error("step {step}, fixed increment {increment} failed: {cause}; allow automatic increments or take more of them")]
+    #[error(
+        "step {step}, fixed increment {increment} failed: {cause}; allow automatic increments or take more of them"
+    )]
     FixedIncrementFailed {
         /// Name of the step.
         step: String,
@@ -78,8 +82,12 @@ pub enum FemError {
         limit: usize,
     },
     /// A body can still move as a whole.
-    #[error("{count} rigid motion(s) are not held: {motions}; prescribe them at a reference point or on nodes")]
+    #[error(
+        "step {step}: {count} rigid motion(s) are not held: {motions}; prescribe them at a reference point or on nodes"
+    )]
     RigidModes {
+        /// Name of the step.
+        step: String,
         /// How many.
         count: usize,
         /// What they are.
@@ -99,6 +107,12 @@ pub enum FemError {
         /// Index of the node.
         node: usize,
         /// Where it is named.
+        name: String,
+    },
+    /// A section whose nodes lie on a line or in a point.
+    #[error("the nodes of section {name} lie on one line, so that a rotation about it moves none: take more nodes")]
+    DegenerateSection {
+        /// Name.
         name: String,
     },
     /// A section without nodes.

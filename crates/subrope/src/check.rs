@@ -8,7 +8,6 @@ use subrope_io::Ignored;
 
 use crate::Error;
 use crate::model::{ModelError, RopeModel};
-use crate::run::RunError;
 use crate::scene::SceneFile;
 
 /// What a scene amounts to.
@@ -63,11 +62,8 @@ const BASE_BYTES: f64 = 15e6;
 /// nothing holds.
 pub fn check_scene(file: &SceneFile) -> Result<CheckReport, Error> {
     let mut model = RopeModel::new(file, None)?;
-    let solver = |cause| RunError::Solver { cause: Box::new(cause), kept: None };
-    if let Some(step) = model.steps.first() {
-        model.analysis.analyse(step).map_err(solver)?;
-    }
-    Ok(report(model).map_err(Error::Model)?)
+    model.check_steps()?;
+    report(model).map_err(Error::Model)
 }
 
 fn report(model: RopeModel) -> Result<CheckReport, ModelError> {

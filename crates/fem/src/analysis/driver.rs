@@ -29,8 +29,14 @@ pub struct Analysis {
     pub(super) threads: usize,
     pub(super) system: Option<System>,
     pub(super) prescribed: Vec<bool>,
+    /// Prescribed coordinates of the last step that was run.
+    prescribed_before: Vec<bool>,
     /// Committed coordinates.
     pub(super) q: Vec<f64>,
+    /// Reactions at the start of the step of coordinates that it sets free.
+    pub(super) released: Vec<(u32, f64)>,
+    /// Largest reference of a converged increment.
+    pub(super) largest_reference: f64,
     /// Coordinates at the start of the step.
     pub(super) step_start: Vec<f64>,
     /// Change of the coordinates over the last increment and its length.
@@ -67,7 +73,10 @@ impl Analysis {
             threads,
             system: None,
             prescribed: Vec::new(),
+            prescribed_before: Vec::new(),
             q: vec![0.0; coordinates],
+            released: Vec::new(),
+            largest_reference: 0.0,
             step_start: vec![0.0; coordinates],
             last_change: vec![0.0; coordinates],
             last_length: 0.0,
@@ -126,13 +135,11 @@ impl Analysis {
         &self.reaction
     }
 
-    /// Force \[N\] and moment about its current position \[N mm\] that act on a reference point from outside
-    /// through prescribed motions.
+    /// Force \[N\] and moment about its current position \[N mm\] that act on the section of a reference point from
+    /// outside: through prescribed motions and as loads on the point.
     #[must_use]
     pub fn point_reaction(&self, point: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let (force, moment) = self.model.kinematics.section_resultant(point, &self.q, &self.nodal_reactions());
-        let first = self.model.kinematics.points()[point].first as usize;
-        (force - Vector3::from_column_slice(&self.coordinate_load[first..first + 3]), moment)
+        self.model.kinematics.section_resultant(point, &self.q, &self.nodal_reactions())
     }
 
     /// Energies and counts.
@@ -168,11 +175,12 @@ impl Analysis {
     }
 
     fn run_step_here(&mut self, step: &Step, observer: &mut dyn Observer) -> Result<(), FemError> {
+        self.release(step);
         self.analyse(step)?;
         // A new step turns elsewhere: nothing to continue.
         self.last_length = 0.0;
         self.step_start.copy_from_slice(&self.q);
-        let mut division = Division::new(step.increments);
+        let mut division = Division::new(step);
         let mut attempt = 1;
         while division.done < 1.0 {
             division.check_count(step)?;
@@ -214,28 +222,54 @@ impl Analysis {
         }
     }
 
+    /// Notes the reactions of coordinates that the step sets free: they are taken away over the step, not at once.
+    fn release(&mut self, step: &Step) {
+        let mut released = std::mem::take(&mut self.prescribed_before);
+        step.prescriptions.iter().for_each(|p| {
+            if let Some(held) = released.get_mut(p.coordinate as usize) {
+                *held = false;
+            }
+        });
+        self.released =
+            released.iter().enumerate().filter(|(_, r)| **r).map(|(c, _)| (c as u32, self.reaction[c])).collect();
+        self.prescribed_before = self.prescribed_by(step);
+    }
+
+    fn prescribed_by(&self, step: &Step) -> Vec<bool> {
+        let mut prescribed = vec![false; self.q.len()];
+        step.prescriptions.iter().for_each(|p| prescribed[p.coordinate as usize] = true);
+        prescribed
+    }
+
+    /// Checks that a step leaves no rigid motion free.
+    ///
+    /// # Errors
+    /// [`FemError::RigidModes`].
+    pub fn check_held(&self, step: &Step) -> Result<(), FemError> {
+        let prescribed = self.prescribed_by(step);
+        let motions = rigid_motions(&self.model.kinematics, &self.model.contributions, &prescribed);
+        if motions.is_empty() {
+            return Ok(());
+        }
+        Err(FemError::RigidModes { step: step.name.clone(), count: motions.len(), motions: motions.join(", ") })
+    }
+
     /// Makes the system of a step unless the last one serves: numbering, pattern, symbolic factorisation. A run does it
     /// by itself; alone it tells what a step will cost.
     ///
     /// # Errors
     /// [`FemError::RigidModes`], [`FemError::Linear`].
     pub fn analyse(&mut self, step: &Step) -> Result<(), FemError> {
-        let mut prescribed = vec![false; self.q.len()];
-        for p in &step.prescriptions {
-            prescribed[p.coordinate as usize] = true;
-        }
+        let prescribed = self.prescribed_by(step);
         if self.system.is_some() && prescribed == self.prescribed {
             return Ok(());
         }
-        let motions = rigid_motions(&self.model.kinematics, &self.model.contributions, &prescribed);
-        if !motions.is_empty() {
-            return Err(FemError::RigidModes { count: motions.len(), motions: motions.join(", ") });
-        }
+        self.check_held(step)?;
         self.system = None;
         let (model, options) = (&self.model, &self.solver_options);
-        let system = self.phases.measure(Phase::Analysis, || {
-            System::new(&model.kinematics, &model.contributions, &prescribed, options)
-        })?;
+        let system = self
+            .phases
+            .measure(Phase::Analysis, || System::new(&model.kinematics, &model.contributions, &prescribed, options))?;
         self.work = Workspace::new(self.q.len(), self.model.kinematics.node_count(), system.equations().len());
         self.system = Some(system);
         self.prescribed = prescribed;
@@ -257,23 +291,28 @@ struct Division {
     length: f64,
     count: usize,
     kind: Increments,
+    /// Fractions that an increment must end at.
+    knots: Vec<f64>,
 }
 
 impl Division {
-    fn new(kind: Increments) -> Self {
+    fn new(step: &Step) -> Self {
+        let kind = step.increments;
         let length = match kind {
             Increments::Fixed(n) => 1.0 / n as f64,
             Increments::Automatic { initial, .. } => initial,
         };
-        Self { done: 0.0, length, count: 0, kind }
+        Self { done: 0.0, length, count: 0, kind, knots: step.knots.clone() }
     }
 
     fn next_end(&self) -> f64 {
         match self.kind {
             Increments::Fixed(n) => (self.count + 1) as f64 / n as f64,
-            // No crumb at the end of a step.
-            Increments::Automatic { .. } if self.done + 1.001 * self.length >= 1.0 => 1.0,
-            Increments::Automatic { .. } => self.done + self.length,
+            Increments::Automatic { .. } => {
+                let limit = self.knots.iter().copied().find(|k| *k > self.done * (1.0 + 1e-12)).unwrap_or(1.0);
+                // No crumb before a knot or at the end of a step.
+                if self.done + 1.001 * self.length >= limit { limit } else { self.done + self.length }
+            }
         }
     }
 

@@ -28,12 +28,8 @@ struct Comparison {
 impl Analysis {
     /// Moves the base along the correction and leaves it evaluated there with its tangent.
     pub(super) fn advance(&mut self, work: &mut Workspace, slope: f64) -> Result<(), FemError> {
-        let mut search = Comparison {
-            length: 1.0,
-            slope,
-            base_norm: work.base.norm,
-            base_potential: work.base.potential,
-        };
+        let mut search =
+            Comparison { length: 1.0, slope, base_norm: work.base.norm, base_potential: work.base.potential };
         let mut best: Option<(f64, f64)> = None;
         for trial in 0..TRIALS {
             let request = if trial == 0 { Request::Tangent } else { Request::Residual };

@@ -21,6 +21,10 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Part of the norm of the element forces below which reactions do not count as a reference.
 const SMALL_REACTION: f64 = 1e-6;
 
+/// Part of the largest reference so far below which the present one does not count: a body that comes back to rest has
+/// no reactions to compare with.
+const REST: f64 = 1e-3;
+
 impl Analysis {
     /// Solves for the state at the end of an attempt and commits it. On an error nothing has changed.
     pub(super) fn attempt(
@@ -30,7 +34,7 @@ impl Analysis {
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
         let mut work = std::mem::take(&mut self.work);
-        work.target.fill(step, attempt, &self.step_start);
+        work.target.fill(step, attempt, &self.step_start, &self.released);
         let outcome = self.iterate(&mut work, attempt, record);
         self.totals.iterations += record.iterations;
         if outcome.is_ok() {
@@ -103,7 +107,7 @@ impl Analysis {
         work.base.q.copy_from_slice(&self.q);
         let jump = Jump { displacement: &work.jump };
         self.evaluate(&mut work.base, &work.target, Some(jump), Request::Tangent)?;
-        self.correct(work)?;
+        record.negative_pivots = self.correct(work)?;
         record.iterations += 1;
         work.base.q.copy_from_slice(&work.trial.q);
         self.equations()?.scatter_add(1.0, &work.correction, &mut work.base.q);
@@ -184,7 +188,8 @@ impl Analysis {
         }
         let loads = target.nodal.iter().chain(&target.coordinates).map(|f| f * f).sum::<f64>();
         iterate.norm = free.sqrt();
-        iterate.reference = held.sqrt().max(loads.sqrt()).max(SMALL_REACTION * scale);
+        iterate.reference =
+            held.sqrt().max(loads.sqrt()).max(SMALL_REACTION * scale).max(REST * self.largest_reference);
         if iterate.norm <= ROUNDING * scale {
             iterate.norm = 0.0;
         }
@@ -201,14 +206,17 @@ impl Analysis {
         for c in 0..self.q.len() {
             let change = new.q[c] - self.q[c];
             let load = 0.5 * (self.coordinate_load[c] + target.coordinates[c]);
-            external += (load + if self.prescribed[c] { 0.5 * (self.reaction[c] + new.residual[c]) } else { 0.0 }) * change;
+            external +=
+                (load + if self.prescribed[c] { 0.5 * (self.reaction[c] + new.residual[c]) } else { 0.0 }) * change;
             self.last_change[c] = change;
         }
         for i in 0..self.displacement.len() {
             let load = 0.5 * (self.nodal_load[i] + target.nodal[i]);
             external += load * (new.displacement[i] - self.displacement[i]);
         }
+        self.largest_reference = self.largest_reference.max(new.reference);
         self.totals.external_work += external;
+        self.totals.work_scale = self.totals.work_scale.max(self.totals.external_work.abs());
         self.totals.stored = new.energies.stored;
         self.totals.stabilising += new.energies.stabilising;
         for mode in 0..2 {
@@ -250,12 +258,16 @@ fn hopeless(residuals: &[f64]) -> bool {
 
 impl super::workspace::Target {
     /// Loads and prescribed values at the end of an attempt.
-    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64]) {
+    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64], released: &[(u32, f64)]) {
         self.prescribed.clear();
         let value = |p: &Prescription| (p.coordinate, (p.path)(attempt.to, start[p.coordinate as usize]));
         self.prescribed.extend(step.prescriptions.iter().map(value));
         self.nodal.fill(0.0);
         self.coordinates.fill(0.0);
+        // What was held and is free now lets go over the step.
+        for &(c, reaction) in released {
+            self.coordinates[c as usize] += (1.0 - attempt.to) * reaction;
+        }
         for load in &step.loads {
             let factor = (load.path)(attempt.to, 0.0);
             for (node, force) in &load.load.nodal {

@@ -40,6 +40,8 @@ impl Phases {
 pub struct Totals {
     /// Work of reactions and loads, trapezoidal rule.
     pub external_work: f64,
+    /// Largest magnitude of the external work so far.
+    pub work_scale: f64,
     /// Stored now.
     pub stored: f64,
     /// Dissipated by transverse and longitudinal sliding, end values (as in the fields).
@@ -61,12 +63,12 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// `external work - stored - dissipated - stabilising` over the external work, with mid-point dissipation.
+    /// `external work - stored - dissipated - stabilising` over the largest external work so far, with mid-point
+    /// dissipation.
     #[must_use]
     pub fn energy_error(&self) -> f64 {
-        let balance =
-            self.external_work - self.stored - self.dissipated_mid.iter().sum::<f64>() - self.stabilising;
-        if self.external_work == 0.0 { balance } else { balance / self.external_work.abs() }
+        let balance = self.external_work - self.stored - self.dissipated_mid.iter().sum::<f64>() - self.stabilising;
+        if self.work_scale == 0.0 { 0.0 } else { balance / self.work_scale }
     }
 }
 

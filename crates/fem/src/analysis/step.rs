@@ -65,6 +65,8 @@ pub struct Step {
     pub loads: Vec<StepLoad>,
     /// Division.
     pub increments: Increments,
+    /// Fractions in \]0, 1\[ at which a path has a corner, rising: automatic increments end there.
+    pub knots: Vec<f64>,
 }
 
 /// Settings of the Newton iteration and of the stepping.

@@ -1,7 +1,7 @@
 //! Viscous stabilisation, only when asked: dashpots on all nodes, whose energy is reported.
 
-use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::FemError;
+use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 
 /// Dashpots `f = c_i (u - u_n)/dt` on nodes, `c_i` a damping per node \[N s/mm\]. Only as converged as the
 /// increment is short; the energy spent is part of the balance.

@@ -1,7 +1,7 @@
 //! The sparse system of a model for one set of prescribed coordinates: pattern, scatter maps, solver, assembly.
 
-use super::scatter::{self, Cliques, ScatterMap};
 use super::Equations;
+use super::scatter::{self, Cliques, ScatterMap};
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::kinematics::{Kinematics, Reduction, Tie};

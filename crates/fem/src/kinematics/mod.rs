@@ -89,6 +89,7 @@ impl Kinematics {
         let mut owner: Vec<Option<u32>> = vec![None; positions.len()];
         for (index, section) in sections.iter().enumerate() {
             claim(&mut owner, index as u32, section)?;
+            check_extent(section, &positions)?;
         }
         let (mut next, mut ties) = (0_u32, 0_u32);
         let mut rules: Vec<NodeRule> = owner
@@ -299,6 +300,20 @@ fn claim(owner: &mut [Option<u32>], index: u32, section: &Section) -> Result<(),
         *slot = Some(index);
     }
     Ok(())
+}
+
+/// Every rotation of a section must move a node of it.
+fn check_extent(section: &Section, positions: &[Vector3<f64>]) -> Result<(), FemError> {
+    let first = positions[section.nodes[0] as usize];
+    let arms = || section.nodes.iter().map(|&n| positions[n as usize] - first);
+    let along = arms().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap_or_else(Vector3::zeros);
+    let size = along.norm();
+    let off_line = arms().map(|arm| arm.cross(&along).norm()).fold(0.0, f64::max);
+    if off_line > 1e-9 * size * size {
+        Ok(())
+    } else {
+        Err(FemError::DegenerateSection { name: section.name.clone() })
+    }
 }
 
 /// Gives a sliding coordinate to each node of a section that has a radius (a node on the axis has none).

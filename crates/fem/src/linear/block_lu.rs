@@ -4,10 +4,10 @@
 //! the diagonal blocks. Only the factors of the blocks `D_k` are kept; the couplings stay sparse. Both chains are
 //! worked at the same time by the same sequential kernels, so that results do not depend on the threads.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{PartialPivLuParams, lu_in_place, lu_in_place_scratch};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::{Accum, ColMut, MatMut, MatRef, Par, Spec};
 
 use super::block_plan::{Block, BlockPlan, Component, Entry};
@@ -168,7 +168,8 @@ impl Factors<'_> {
         let entries = &mut work.product[..block.size * columns];
         entries.fill(0.0);
         for entry in &block.to_next {
-            entries[places[entry.row as usize] as usize + entry.col as usize * block.size] = values[entry.slot as usize];
+            entries[places[entry.row as usize] as usize + entry.col as usize * block.size] =
+                values[entry.slot as usize];
         }
         let mut product = MatMut::from_column_major_slice_mut(entries, block.size, columns);
         let factors = self.block_mut(block);

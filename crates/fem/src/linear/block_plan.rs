@@ -195,7 +195,8 @@ impl Block {
             let rows = first..(first + STRIPE_ROWS).min(next_rows);
             let count = self.from_next[begin..].partition_point(|entry| (entry.row as usize) < rows.end);
             let entries = begin..begin + count;
-            if let (Some(left), Some(right)) = (self.from_next[entries.clone()].first(), self.from_next[entries.clone()].last())
+            if let (Some(left), Some(right)) =
+                (self.from_next[entries.clone()].first(), self.from_next[entries.clone()].last())
             {
                 let cols = left.col as usize..right.col as usize + 1;
                 self.stripes.push(Stripe { rows, cols, entries: entries.clone() });

@@ -37,7 +37,7 @@ pub enum LinearError {
     /// Memory for the factors could not be reserved.
     #[error("no memory for {bytes} bytes of factors")]
     OutOfMemory {
-        /// Size of the request [B].
+        /// Size of the request \[B\].
         bytes: usize,
     },
     /// A slice has the wrong length.
@@ -92,9 +92,9 @@ pub enum LinearError {
     /// The solution does not satisfy the system although refined.
     #[error("relative residual {residual:.3e} above {tolerance:.1e} after {refinements} refinements")]
     ResidualTooLarge {
-        /// `|A x - b| / (|A| |x| + |b|)` in the maximum norm [-].
+        /// `|A x - b| / (|A| |x| + |b|)` in the maximum norm \[-\].
         residual: f64,
-        /// Tolerance [-].
+        /// Tolerance \[-\].
         tolerance: f64,
         /// Steps of iterative refinement taken.
         refinements: usize,

@@ -4,6 +4,8 @@
 //! each run through the depth of the product without packing, which for the panels of a slender body is faster than
 //! a general matrix product.
 
+use std::ops::Range;
+
 use pulp::{Simd, WithSimd};
 
 /// Columns taken at a time.
@@ -89,9 +91,9 @@ impl Product<'_> {
         for (number, row) in self.pieces[place..].iter().enumerate() {
             let skip = if number == 0 { first } else { 0 };
             let offset = (column.target + first) * self.target_stride + row.target + skip;
-            let lower = &self.lower[row.source + skip..];
-            let target = &mut self.target[offset..];
-            subtract(simd, target, self.target_stride, lower, self.stride, row.len - skip, factors);
+            let lower = Columns { values: &self.lower[row.source + skip..], stride: self.stride };
+            let target = (&mut self.target[offset..], self.target_stride);
+            subtract(simd, target, lower, row.len - skip, factors);
         }
     }
 }
@@ -121,75 +123,76 @@ fn store<S: Simd, const FULL: bool>(simd: S, slice: &mut [f64], value: S::f64s) 
     }
 }
 
-/// `target[r, c] -= Σ_k lower[r, k] factors[k][c]` of `rows` rows.
+/// Columns of a panel from one of its rows on.
+#[derive(Clone, Copy)]
+struct Columns<'a> {
+    values: &'a [f64],
+    stride: usize,
+}
+
+/// `target[r, c] -= Σ_k lower[r, k] factors[k][c]` of `rows` rows; the target has a stride too.
 #[inline(always)]
 fn subtract<S: Simd, const W: usize>(
     simd: S,
-    target: &mut [f64],
-    target_stride: usize,
-    lower: &[f64],
-    stride: usize,
+    (target, stride): (&mut [f64], usize),
+    lower: Columns<'_>,
     rows: usize,
     factors: &[[f64; W]],
 ) {
     let lanes = S::F64_LANES;
     let full = rows - rows % lanes;
     for row in (0..full).step_by(lanes) {
-        subtract_rows::<S, W, true>(simd, target, target_stride, lower, stride, row..row + lanes, factors);
+        subtract_rows::<S, W, true>(simd, (target, stride), lower, row..row + lanes, factors);
     }
     if full < rows {
-        subtract_rows::<S, W, false>(simd, target, target_stride, lower, stride, full..rows, factors);
+        subtract_rows::<S, W, false>(simd, (target, stride), lower, full..rows, factors);
     }
 }
 
 #[inline(always)]
 fn subtract_rows<S: Simd, const W: usize, const FULL: bool>(
     simd: S,
-    target: &mut [f64],
-    target_stride: usize,
-    lower: &[f64],
-    stride: usize,
-    rows: std::ops::Range<usize>,
+    (target, stride): (&mut [f64], usize),
+    lower: Columns<'_>,
+    rows: Range<usize>,
     factors: &[[f64; W]],
 ) {
-    let mut sums = load_rows::<S, W, FULL>(simd, target, target_stride, rows.clone());
-    accumulate::<S, W, FULL>(simd, &mut sums, lower, stride, rows.clone(), factors);
+    let sums = load_rows::<S, W, FULL>(simd, Columns { values: target, stride }, rows.clone());
+    let sums = accumulate::<S, W, FULL>(simd, sums, lower, rows.clone(), factors);
     for (c, &sum) in sums.iter().enumerate() {
-        store::<S, FULL>(simd, &mut target[c * target_stride + rows.start..c * target_stride + rows.end], sum);
+        store::<S, FULL>(simd, &mut target[c * stride + rows.start..c * stride + rows.end], sum);
     }
 }
 
 #[inline(always)]
 fn load_rows<S: Simd, const W: usize, const FULL: bool>(
     simd: S,
-    values: &[f64],
-    stride: usize,
-    rows: std::ops::Range<usize>,
+    source: Columns<'_>,
+    rows: Range<usize>,
 ) -> [S::f64s; W] {
     let mut loaded = [simd.splat_f64s(0.0); W];
     for (c, entry) in loaded.iter_mut().enumerate() {
-        *entry = load::<S, FULL>(simd, &values[c * stride + rows.start..c * stride + rows.end]);
+        *entry = load::<S, FULL>(simd, &source.values[c * source.stride + rows.start..c * source.stride + rows.end]);
     }
     loaded
 }
 
+/// `sums[c] - Σ_k lower[rows, k] factors[k][c]`.
 #[inline(always)]
 fn accumulate<S: Simd, const W: usize, const FULL: bool>(
     simd: S,
-    sums: &mut [S::f64s; W],
-    lower: &[f64],
-    stride: usize,
-    rows: std::ops::Range<usize>,
+    mut sums: [S::f64s; W],
+    lower: Columns<'_>,
+    rows: Range<usize>,
     factors: &[[f64; W]],
-) {
-    let mut local = *sums;
-    for (column, factor) in lower.chunks(stride).zip(factors) {
+) -> [S::f64s; W] {
+    for (column, factor) in lower.values.chunks(lower.stride).zip(factors) {
         let entry = load::<S, FULL>(simd, &column[rows.start..rows.end]);
-        for (sum, &factor) in local.iter_mut().zip(factor) {
+        for (sum, &factor) in sums.iter_mut().zip(factor) {
             *sum = simd.negate_mul_add_f64s(entry, simd.splat_f64s(factor), *sum);
         }
     }
-    *sums = local;
+    sums
 }
 
 impl WithSimd for Factorisation<'_> {
@@ -226,7 +229,8 @@ impl Factorisation<'_> {
         }
         let factors = &self.scaled.as_chunks::<W>().0[..first];
         if first > 0 {
-            subtract(simd, &mut own[first..], stride, &left[first..], stride, W, factors);
+            let lower = Columns { values: &left[first..], stride };
+            subtract(simd, (&mut own[first..], stride), lower, W, factors);
         }
         let corner = Corner::<W>::factorise(&mut own[first..], stride).map_err(|column| first + column)?;
         let (lanes, begin) = (S::F64_LANES, first + W);
@@ -263,13 +267,14 @@ impl<const W: usize> Corner<W> {
                 return Err(c);
             }
             corner.inverse[c] = pivot.recip();
-            for r in c + 1..W {
-                corner.lower[c][r] = block[c][r] * corner.inverse[c];
+            let (done, rest) = block.split_at_mut(c + 1);
+            let lower = &mut corner.lower[c];
+            for (entry, &value) in lower[c + 1..].iter_mut().zip(&done[c][c + 1..]) {
+                *entry = value * corner.inverse[c];
             }
-            for other in c + 1..W {
-                let factor = block[c][other];
-                for r in other..W {
-                    block[other][r] -= corner.lower[c][r] * factor;
+            for (column, &factor) in rest.iter_mut().zip(&done[c][c + 1..]) {
+                for (entry, &value) in column[c + 1..].iter_mut().zip(&lower[c + 1..]) {
+                    *entry -= value * factor;
                 }
             }
             values[c * stride + c] = pivot;
@@ -284,11 +289,11 @@ impl<const W: usize> Corner<W> {
         &self,
         simd: S,
         (left, own, stride): (&[f64], &mut [f64], usize),
-        rows: std::ops::Range<usize>,
+        rows: Range<usize>,
         factors: &[[f64; W]],
     ) {
-        let mut sums = load_rows::<S, W, FULL>(simd, own, stride, rows.clone());
-        accumulate::<S, W, FULL>(simd, &mut sums, left, stride, rows.clone(), factors);
+        let sums = load_rows::<S, W, FULL>(simd, Columns { values: own, stride }, rows.clone());
+        let mut sums = accumulate::<S, W, FULL>(simd, sums, Columns { values: left, stride }, rows.clone(), factors);
         for c in 0..W {
             let solved = sums[c];
             for (sum, &factor) in sums[c + 1..].iter_mut().zip(&self.lower[c][c + 1..]) {

@@ -69,7 +69,8 @@ impl Ldlt {
     /// Position in elimination order and value of every pivot.
     pub(super) fn pivots(&self) -> impl Iterator<Item = (usize, f64)> {
         self.plan.supernodes.list.iter().flat_map(|supernode| {
-            let entry = |column| (supernode.begin + column, self.values[supernode.offset + column * (supernode.rows + 1)]);
+            let entry =
+                |column| (supernode.begin + column, self.values[supernode.offset + column * (supernode.rows + 1)]);
             (0..supernode.columns()).map(entry)
         })
     }
@@ -117,13 +118,7 @@ fn factorise_panel(
     for update in plan.updates(number) {
         let source = &plan.supernodes.list[update.source as usize];
         let source_values = &finished[source.offset - base..][..source.len()];
-        panel::update(
-            &plan.supernodes,
-            (supernode, target),
-            (source, source_values),
-            update.first_run as usize,
-            work,
-        );
+        panel::update(&plan.supernodes, (supernode, target), (source, source_values), update.first_run as usize, work);
     }
     panel::factorise(target, supernode, work).map_err(|column| {
         let dof = plan.order.get(supernode.begin + column).map_or(0, |&dof| dof as usize);

@@ -99,9 +99,14 @@ fn updates(supernodes: &Supernodes) -> (Vec<usize>, Vec<Update>) {
     let count = supernodes.list.len();
     let mut start = vec![0usize; count + 1];
     for source in &supernodes.list {
-        for_each_target(supernodes, source.end, supernodes.runs(source).iter().map(|r| (r.begin, r.end)), |target, _| {
-            start[target + 1] += 1;
-        });
+        for_each_target(
+            supernodes,
+            source.end,
+            supernodes.runs(source).iter().map(|r| (r.begin, r.end)),
+            |target, _| {
+                start[target + 1] += 1;
+            },
+        );
     }
     for i in 0..count {
         start[i + 1] += start[i];

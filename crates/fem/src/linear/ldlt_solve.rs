@@ -1,9 +1,7 @@
 //! Solution with the supernodal LDLᵀ factors, in place and in elimination order.
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_unit_lower_triangular_in_place, solve_unit_upper_triangular_in_place,
-};
+use faer::linalg::triangular_solve::{solve_unit_lower_triangular_in_place, solve_unit_upper_triangular_in_place};
 use faer::{Accum, ColMut, ColRef, MatRef, Par};
 
 use super::ldlt::Ldlt;
@@ -213,11 +211,8 @@ impl<'a> Split<'a> {
     fn parts(&self, begin: usize, end: usize) -> impl Iterator<Item = Part> {
         let boundary = self.root.end.clamp(begin, end);
         let within = Part { begin, len: boundary - begin, above: false, place: 0 };
-        let place = if boundary < end {
-            self.plan.supernodes.local_row(self.root, boundary) - self.root.columns()
-        } else {
-            0
-        };
+        let place =
+            if boundary < end { self.plan.supernodes.local_row(self.root, boundary) - self.root.columns() } else { 0 };
         let above = Part { begin: boundary, len: end - boundary, above: true, place };
         [within, above].into_iter().filter(|part| part.len > 0)
     }
@@ -243,12 +238,5 @@ fn divide_pivots(top: MatRef<'_, f64>, own: &mut [f64]) {
 
 /// `target -= matrix vector`.
 fn subtract(matrix: MatRef<'_, f64>, vector: &[f64], target: &mut [f64]) {
-    matmul(
-        ColMut::from_slice_mut(target),
-        Accum::Add,
-        matrix,
-        ColRef::from_slice(vector),
-        -1.0,
-        Par::Seq,
-    );
+    matmul(ColMut::from_slice_mut(target), Accum::Add, matrix, ColRef::from_slice(vector), -1.0, Par::Seq);
 }

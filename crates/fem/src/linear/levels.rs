@@ -103,7 +103,7 @@ impl<'a> Search<'a> {
     }
 
     fn component(&mut self, seed: u32, origin: Origin) -> Levels {
-        let first = self.from_peripheral(seed, 0);
+        let first = self.peripheral_levels(seed, 0);
         if origin == Origin::Vertex {
             return self.sorted_levels(&first.order[..1], 0);
         }
@@ -113,7 +113,7 @@ impl<'a> Search<'a> {
     }
 
     /// Levels from a pseudo-peripheral vertex (George and Liu, ACM Trans. Math. Softw. 5, 1979).
-    fn from_peripheral(&mut self, seed: u32, region: u32) -> Levels {
+    fn peripheral_levels(&mut self, seed: u32, region: u32) -> Levels {
         let mut levels = self.plain_levels(seed, region);
         loop {
             let degree = |&&v: &&u32| self.graph.neighbours(v).len();
@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
             if self.region[vertex as usize] != SWEPT {
                 continue;
             }
-            let root = self.from_peripheral(vertex, SWEPT).order[0];
+            let root = self.peripheral_levels(vertex, SWEPT).order[0];
             let part = self.sorted_levels(&[root], SWEPT);
             for &done in &part.order {
                 self.region[done as usize] = 0;

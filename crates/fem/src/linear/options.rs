@@ -34,16 +34,16 @@ pub struct SolverOptions {
     /// Factorisation of unsymmetric values, [`Method::BlockLu`] or [`Method::SparseLu`]; `None` chooses by memory.
     /// Symmetric values are always factorised by [`Method::Ldlt`].
     pub unsymmetric: Option<Method>,
-    /// Memory above which the block LU gives way to the sparse LU [B].
+    /// Memory above which the block LU gives way to the sparse LU \[B\].
     pub block_memory: usize,
-    /// Ratio of the memory of the block LU to the estimate for the sparse LU above which it gives way [-].
+    /// Ratio of the memory of the block LU to the estimate for the sparse LU above which it gives way \[-\].
     pub block_memory_ratio: f64,
-    /// Pivot below which the matrix is called singular, relative to the largest entry of its row [-]. With
+    /// Pivot below which the matrix is called singular, relative to the largest entry of its row \[-\]. With
     /// [`Method::SparseLu`] a bound of the smallest singular value relative to the norm of the matrix.
     pub singular_pivot: f64,
-    /// Relative residual that ends the refinement [-].
+    /// Relative residual that ends the refinement \[-\].
     pub target_residual: f64,
-    /// Largest relative residual accepted [-].
+    /// Largest relative residual accepted \[-\].
     pub residual_limit: f64,
     /// Steps of iterative refinement always taken.
     pub least_refinements: usize,
@@ -53,7 +53,7 @@ pub struct SolverOptions {
     pub relaxation: Vec<Relaxation>,
     /// Most columns of a supernode.
     pub widest_supernode: usize,
-    /// Work from which branches of the elimination tree are worked at the same time [flop].
+    /// Work from which branches of the elimination tree are worked at the same time \[flop\].
     pub branch_flops: f64,
 }
 
@@ -69,8 +69,8 @@ impl Default for SolverOptions {
             residual_limit: 1e-9,
             least_refinements: 1,
             most_refinements: 5,
-            relaxation: vec![Relaxation { columns: 12, zeros: 0.8 }, Relaxation { columns: 64, zeros: 0.2 }],
-            widest_supernode: 256,
+            relaxation: vec![Relaxation { columns: 12, zeros: 0.8 }, Relaxation { columns: 128, zeros: 0.1 }],
+            widest_supernode: 128,
             branch_flops: 2e7,
         }
     }
@@ -94,7 +94,7 @@ pub struct AnalysisReport {
     pub fill: FillEstimate,
     /// All orders tried for LDLᵀ.
     pub candidates: Vec<Candidate>,
-    /// Memory held by the solver [B]; without the factors for [`Method::SparseLu`].
+    /// Memory held by the solver \[B\]; without the factors for [`Method::SparseLu`].
     pub bytes: usize,
     /// Branches of the elimination that are worked at the same time.
     pub branches: usize,
@@ -105,7 +105,7 @@ pub struct AnalysisReport {
 pub struct FactorReport {
     /// Negative pivots, equal to the negative eigenvalues (Sylvester); `None` for unsymmetric values.
     pub negative_pivots: Option<usize>,
-    /// Smallest pivot relative to the largest entry of its row [-]; `None` for [`Method::SparseLu`].
+    /// Smallest pivot relative to the largest entry of its row \[-\]; `None` for [`Method::SparseLu`].
     pub smallest_pivot: Option<f64>,
     /// Unknown of the smallest pivot.
     pub smallest_pivot_dof: Option<usize>,
@@ -114,9 +114,9 @@ pub struct FactorReport {
 /// What a solution attained.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolveReport {
-    /// `|A x - b| / (|A| |x| + |b|)` in the maximum norm [-].
+    /// `|A x - b| / (|A| |x| + |b|)` in the maximum norm \[-\].
     pub residual: f64,
-    /// The same before refinement [-].
+    /// The same before refinement \[-\].
     pub first_residual: f64,
     /// Steps of iterative refinement taken.
     pub refinements: usize,

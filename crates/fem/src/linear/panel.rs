@@ -11,7 +11,7 @@ use super::supernodes::{Run, Supernode, Supernodes};
 
 /// Rows per part of a product that is worth a thread of its own.
 const SPLIT_ROWS: usize = 512;
-/// Work below which a product is not split [flop].
+/// Work below which a product is not split \[flop\].
 const SPLIT_FLOPS: usize = 20_000_000;
 /// Rows and columns per piece from which an update goes straight to its target.
 const DIRECT_ROWS: usize = 24;
@@ -97,8 +97,10 @@ pub(super) fn update(
     }
     let pieces = &work.pieces[..];
     let direct = rows >= DIRECT_ROWS * (pieces.len() - 1) && middle >= DIRECT_COLUMNS * (columns - 1);
-    let whole = [Piece { source: 0, target: 0, len: middle }, Piece { source: middle, target: middle, len: rows - middle }];
-    let common = Common { source, lower: &source_values[first_row..], pivots, scaled: &mut work.scaled, arch: work.arch };
+    let whole =
+        [Piece { source: 0, target: 0, len: middle }, Piece { source: middle, target: middle, len: rows - middle }];
+    let common =
+        Common { source, lower: &source_values[first_row..], pivots, scaled: &mut work.scaled, arch: work.arch };
     if direct {
         common.subtract(target_values, target.rows, pieces, columns);
     } else {

@@ -254,8 +254,7 @@ fn unsymmetric(pattern: &SparsePattern, graph: &Graph, options: &SolverOptions) 
     let (choice, candidates) = choose(graph, options.ordering)?;
     let (levels, cost) = cheapest_levels(graph);
     let sparse_bytes = 2.0 * COLUMN_ORDER_FILL * choice.candidate.fill.nonzeros * size_of::<f64>() as f64;
-    let too_large =
-        cost.bytes > options.block_memory as f64 || cost.bytes > options.block_memory_ratio * sparse_bytes;
+    let too_large = cost.bytes > options.block_memory as f64 || cost.bytes > options.block_memory_ratio * sparse_bytes;
     let sparse = match options.unsymmetric {
         Some(method) => method == Method::SparseLu,
         None => too_large,

@@ -2,8 +2,8 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::PartialPivLuParams;
-use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
 use faer::sparse::linalg::LuError;
+use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{ColMut, Conj, Par, Spec};
 
@@ -42,8 +42,8 @@ impl SparseLu {
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, params)
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let bytes = request.size_bytes() + (col_ptr.len() + row_idx.len()) * size_of::<u32>();
-        let memory = MemBuffer::try_new(request)
-            .map_err(|_| LinearError::OutOfMemory { bytes: request.size_bytes() })?;
+        let memory =
+            MemBuffer::try_new(request).map_err(|_| LinearError::OutOfMemory { bytes: request.size_bytes() })?;
         Ok(Self { n, col_ptr, row_idx, symbolic, numeric: NumericLu::new(), memory, bytes })
     }
 

@@ -9,7 +9,7 @@ use super::graph::Graph;
 pub struct Relaxation {
     /// Columns of the merged supernode.
     pub columns: usize,
-    /// Fraction of explicit zeros in the merged supernode [-].
+    /// Fraction of explicit zeros in the merged supernode \[-\].
     pub zeros: f64,
 }
 
@@ -93,7 +93,9 @@ impl Supernodes {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        self.list.capacity() * size_of::<Supernode>() + self.runs.capacity() * size_of::<Run>() + self.of_unknown.len() * 4
+        self.list.capacity() * size_of::<Supernode>()
+            + self.runs.capacity() * size_of::<Run>()
+            + self.of_unknown.len() * 4
     }
 }
 
@@ -145,13 +147,7 @@ impl Limits<'_> {
     }
 
     /// Explicit zeros of `child` and `parent` in one panel, if the limits allow it.
-    fn merged_zeros(
-        &self,
-        elimination: &Elimination,
-        offset: &[usize],
-        child: Block,
-        parent: Block,
-    ) -> Option<f64> {
+    fn merged_zeros(&self, elimination: &Elimination, offset: &[usize], child: Block, parent: Block) -> Option<f64> {
         let (first, middle, last) = (offset[child.begin], offset[parent.begin], offset[parent.end]);
         let below = |block: Block| {
             let vertex = block.end - 1;
@@ -196,10 +192,11 @@ fn fundamental(elimination: &Elimination, offset: &[usize]) -> Vec<Block> {
     }
     let mut blocks: Vec<Block> = Vec::new();
     for position in 0..n {
-        let joins = position > 0 && elimination.parent[position - 1] as usize == position && children[position] == 1 && {
-            let removed = (offset[position] - offset[position - 1]) as u64;
-            elimination.count[position - 1] == elimination.count[position] + removed
-        };
+        let joins =
+            position > 0 && elimination.parent[position - 1] as usize == position && children[position] == 1 && {
+                let removed = (offset[position] - offset[position - 1]) as u64;
+                elimination.count[position - 1] == elimination.count[position] + removed
+            };
         match blocks.last_mut() {
             Some(last) if joins => last.end = position + 1,
             _ => blocks.push(Block { begin: position, end: position + 1, zeros: 0.0 }),

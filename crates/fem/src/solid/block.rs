@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 use subrope_geometry::Hexahedron;
 use subrope_material::{Law, StateKind};
 
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
 use super::SolidFields;
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
 use super::kernel::{NodeVector, PointGeometry};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::{FemError, parallel};
@@ -240,7 +240,8 @@ impl<const N: usize, L: Law, F: Formulation<N>> Contribution for SolidBlock<N, L
         sink: &mut dyn Sink,
     ) -> Result<Energies, FemError> {
         let (mut trial, mut results) = (std::mem::take(&mut self.trial), std::mem::take(&mut self.results));
-        let outcome = self.assemble_with(configuration, request, sink, Work { trial: &mut trial, results: &mut results });
+        let outcome =
+            self.assemble_with(configuration, request, sink, Work { trial: &mut trial, results: &mut results });
         (self.trial, self.results) = (trial, results);
         outcome
     }
@@ -285,7 +286,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
                 }
                 energies += result.energies;
                 let stiffness = (request == Request::Tangent)
-                    .then(|| result.stiffness.as_flattened().as_flattened().as_flattened());
+                    .then_some(result.stiffness.as_flattened().as_flattened().as_flattened());
                 sink.add(first + i, result.force.as_flattened(), stiffness);
             }
             first += count;

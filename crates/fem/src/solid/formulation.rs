@@ -172,12 +172,7 @@ struct MeanTerms {
 
 impl MeanTerms {
     const fn zero() -> Self {
-        Self {
-            gradient: [[0.0; 8]; 3],
-            stress_coupling: [[0.0; 8]; 3],
-            strain_coupling: [[0.0; 8]; 3],
-            stiffness: 0.0,
-        }
+        Self { gradient: [[0.0; 8]; 3], stress_coupling: [[0.0; 8]; 3], strain_coupling: [[0.0; 8]; 3], stiffness: 0.0 }
     }
 
     #[inline(always)]

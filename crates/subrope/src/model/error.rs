@@ -65,7 +65,9 @@ pub enum ModelError {
         name: String,
     },
     /// A moment as a load.
-    #[error("step \"{step}\": a moment on reference point \"{point}\" is not available as a load; prescribe the rotation and read the moment in history.csv")]
+    #[error(
+        "step \"{step}\": a moment on reference point \"{point}\" is not available as a load; prescribe the rotation and read the moment in history.csv"
+    )]
     MomentLoad {
         /// Step.
         step: String,
@@ -73,7 +75,9 @@ pub enum ModelError {
         point: String,
     },
     /// A component prescribed on nodes that a reference point carries.
-    #[error("constraint \"{constraint}\": node {node} is carried by a reference point; prescribe the motion of that instead")]
+    #[error(
+        "constraint \"{constraint}\": node {node} is carried by a reference point; prescribe the motion of that instead"
+    )]
     ConstrainedSectionNode {
         /// Constraint.
         constraint: String,
@@ -90,12 +94,14 @@ pub enum ModelError {
         /// Label of the node.
         node: u64,
     },
-    /// More memory than there is.
-    #[error("the model would need about {needed_mb} MB, and {available_mb} MB are available: take a coarser mesh")]
-    TooLarge {
-        /// Estimate.
-        needed_mb: u64,
-        /// Free memory.
-        available_mb: u64,
+    /// A corner of a history between two fixed increments.
+    #[error("step \"{step}\": a history has a corner at {knot} of the step, which none of {count} fixed increments ends at")]
+    MissedKnot {
+        /// Step.
+        step: String,
+        /// Fraction of the step.
+        knot: f64,
+        /// Fixed increments.
+        count: usize,
     },
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use subrope_geometry::{
-    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames,
-    Section, SectionArea, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
+    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames, Section,
+    SectionArea, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
 };
 use subrope_io::{Ignored, read_deck};
 

@@ -16,6 +16,7 @@ use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError};
 use subrope_io::Ignored;
 
+use crate::run::RunError;
 use crate::scene::{End, EndKind, LineSearch, Program, Scene, SceneFile};
 
 /// A scene made ready to solve.
@@ -63,6 +64,19 @@ impl RopeModel {
 }
 
 impl RopeModel {
+    /// Checks that no step leaves a rigid motion free, and analyses the first.
+    ///
+    /// # Errors
+    /// [`RunError::Solver`] with the rigid motions, or what the analysis answers.
+    pub fn check_steps(&mut self) -> Result<(), RunError> {
+        let refused = |cause| RunError::Solver { cause: Box::new(cause), kept: None };
+        self.steps.iter().try_for_each(|step| self.analysis.check_held(step)).map_err(refused)?;
+        match self.steps.first() {
+            Some(step) => self.analysis.analyse(step).map_err(refused),
+            None => Ok(()),
+        }
+    }
+
     /// Runs all steps without writing anything; the state is then in `analysis`.
     ///
     /// # Errors

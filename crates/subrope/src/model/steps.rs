@@ -42,7 +42,26 @@ fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinemat
             Increments::Automatic { initial, minimum, maximum, max_count }
         }
     };
-    Ok(Step { name: step.name.clone(), duration: step.duration, prescriptions, loads, increments })
+    let knots = knots(step);
+    if let Increments::Fixed(count) = increments
+        && let Some(knot) = knots.iter().find(|k| ((**k * count as f64).round() - **k * count as f64).abs() > 1e-9)
+    {
+        return Err(ModelError::MissedKnot { step: step.name.clone(), knot: *knot, count });
+    }
+    Ok(Step { name: step.name.clone(), duration: step.duration, prescriptions, loads, increments, knots })
+}
+
+/// Fractions of the step at which a history has a corner.
+fn knots(step: &ProgramStep) -> Vec<f64> {
+    let motions = step.motions.iter().filter_map(|m| match &m.path {
+        MotionPath::Free => None,
+        MotionPath::Linear(path) | MotionPath::Arc { angle: path, .. } => Some(path),
+    });
+    let paths = motions.chain(step.loads.iter().map(|l| &l.path));
+    let mut knots: Vec<f64> = paths.flat_map(|p| p.knots.iter().map(|k| k[0])).filter(|f| *f < 1.0).collect();
+    knots.sort_by(f64::total_cmp);
+    knots.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+    knots
 }
 
 /// The value of a motion over the step; `None` when it is free.
@@ -99,7 +118,10 @@ fn reject_twice(
     prescriptions.sort_by_key(|p| p.coordinate);
     let Some(pair) = prescriptions.windows(2).find(|w| w[0].coordinate == w[1].coordinate) else { return Ok(()) };
     let twice = pair[0].coordinate;
-    let owner = kinematics.rules().iter().position(|r| matches!(r, NodeRule::Free { first } if (*first..*first + 3).contains(&twice)));
+    let owner = kinematics
+        .rules()
+        .iter()
+        .position(|r| matches!(r, NodeRule::Free { first } if (*first..*first + 3).contains(&twice)));
     let node = owner.map_or(0, |n| mesh.mesh.point_label(n));
     let component = ["ux", "uy", "uz"][owner.map_or(0, |n| match kinematics.rules()[n] {
         NodeRule::Free { first } => (twice - first) as usize,

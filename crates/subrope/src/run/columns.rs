@@ -20,8 +20,7 @@ const ENERGIES: [(&str, &str); 8] = [
     ("stabilising_work", "mJ"),
     ("energy_error", "-"),
 ];
-const COUNTS: [(&str, &str); 4] =
-    [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
+const COUNTS: [(&str, &str); 4] = [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
 
 /// Headers, with units.
 pub fn columns(analysis: &Analysis) -> Vec<Column> {
@@ -37,13 +36,8 @@ pub fn columns(analysis: &Analysis) -> Vec<Column> {
 
 /// The row of an increment. `cutbacks` counts since the row before. The sign of reactions: what acts on the model.
 pub fn row(analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Vec<f64> {
-    let mut out = vec![
-        analysis.time(),
-        record.step_index as f64,
-        record.increment as f64,
-        record.fraction,
-        record.length,
-    ];
+    let mut out =
+        vec![analysis.time(), record.step_index as f64, record.increment as f64, record.fraction, record.length];
     let kinematics = &analysis.model().kinematics;
     for point in 0..kinematics.points().len() {
         let (u, r) = kinematics.point_motion(point, analysis.coordinates());

@@ -19,6 +19,14 @@ pub enum RunError {
         /// Folder with the results up to the last converged increment, if there is one.
         kept: Option<PathBuf>,
     },
+    /// The user stopped the run; results are complete up to the last converged increment.
+    #[error("interrupted after increment {increments}; results up to there are in {}", folder.display())]
+    Interrupted {
+        /// Converged increments.
+        increments: usize,
+        /// Folder of the results.
+        folder: PathBuf,
+    },
     /// Results could not be written.
     #[error(transparent)]
     Output(#[from] IoError),
@@ -40,11 +48,11 @@ impl RunError {
             Self::Solver { cause, .. } => match cause.as_ref() {
                 FemError::IncrementTooShort { .. }
                 | FemError::FixedIncrementFailed { .. }
-                | FemError::TooManyIncrements { .. }
-                | FemError::Interrupted => ExitCode::NotConverged,
+                | FemError::TooManyIncrements { .. } => ExitCode::NotConverged,
                 cause if cause.is_recoverable() => ExitCode::NotConverged,
                 _ => ExitCode::Input,
             },
+            Self::Interrupted { .. } => ExitCode::NotConverged,
             Self::Output(_) | Self::Folder { .. } => ExitCode::Output,
         }
     }
@@ -68,6 +76,7 @@ impl RunError {
                 }
                 _ => None,
             },
+            Self::Interrupted { .. } => None,
             Self::Output(_) | Self::Folder { .. } => Some("free some space or choose another folder with --out"),
         }
     }

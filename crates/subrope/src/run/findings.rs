@@ -27,7 +27,7 @@ pub struct Findings {
     pub out_of_plane_mm: f64,
     /// Largest ovality of a section \[-\].
     pub largest_ovality: f64,
-    /// Largest shortening: distance of the end centres over the length, less one \[-\].
+    /// Length less the distance of the end centres \[mm\].
     pub approach_mm: f64,
     /// Transverse sliding; absent when nothing slid.
     pub transverse: Option<ModeFinding>,

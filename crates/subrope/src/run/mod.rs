@@ -69,6 +69,8 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
         observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
     }
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
+    // Everything that can be refused is refused before files of an earlier run are replaced.
+    model.check_steps()?;
     let session = Session::open(&file, &model, &folder)?;
     session.run(&mut model, options.interrupt, observer)
 }

@@ -41,6 +41,9 @@ struct Output {
     arrays: Vec<FieldArray>,
     #[cfg(feature = "hdf5")]
     every: usize,
+    /// Frames left out because a stress could not be evaluated again.
+    #[cfg(feature = "hdf5")]
+    lost_frames: usize,
     /// Increments of the current step since the last frame.
     #[cfg(feature = "hdf5")]
     waiting: usize,
@@ -49,8 +52,7 @@ struct Output {
 impl<'a> Session<'a> {
     /// Makes the folder and opens the files.
     pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, Error> {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
+        std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
         let files = RunFiles {
             folder: folder.to_path_buf(),
             results: cfg!(feature = "hdf5").then(|| folder.join(RESULTS)),
@@ -77,7 +79,8 @@ impl<'a> Session<'a> {
     ) -> Result<RunOutcome, Error> {
         let Self { file, files, output, started } = self;
         let count = model.steps.len();
-        let mut watch = Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0, stable: true };
+        let mut watch =
+            Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0, stable: true };
         let mut outcome = Ok(());
         for (index, step) in model.steps.iter().enumerate() {
             let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
@@ -92,6 +95,11 @@ impl<'a> Session<'a> {
             }
         }
         let failure = watch.failure.take();
+        #[cfg(feature = "hdf5")]
+        if watch.output.lost_frames > 0 {
+            let lost = watch.output.lost_frames;
+            watch.observer.on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
+        }
         let interrupted = matches!(outcome, Err(FemError::Interrupted));
         let closed = watch.output.close(&model.analysis);
         let status = Status::of(&outcome);
@@ -107,7 +115,11 @@ impl<'a> Session<'a> {
                 Err(RunError::Solver { cause: Box::new(cause), kept }.into())
             }
             _ => {
-                observer.on_finish(&finish(&model.analysis, started, interrupted));
+                let finish = finish(&model.analysis, started, interrupted);
+                observer.on_finish(&finish);
+                if interrupted {
+                    return Err(RunError::Interrupted { increments: finish.increments, folder: files.folder }.into());
+                }
                 Ok(RunOutcome { files, summary })
             }
         }
@@ -151,6 +163,7 @@ impl Output {
             arrays,
             every: scene.output.every,
             waiting: 0,
+            lost_frames: 0,
         };
         out.frame(&model.analysis)?;
         Ok(out)
@@ -188,7 +201,10 @@ impl Output {
     fn frame(&mut self, analysis: &Analysis) -> Result<(), IoError> {
         self.waiting = 0;
         // The committed state was evaluated a moment ago: a law that fails here would be at the very edge of its range.
-        let Ok(values) = fields::values(&self.arrays, analysis) else { return Ok(()) };
+        let Ok(values) = fields::values(&self.arrays, analysis) else {
+            self.lost_frames += 1;
+            return Ok(());
+        };
         let slices: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
         self.results.append(analysis.time(), &slices)
     }

@@ -99,7 +99,7 @@ impl Increments {
             return Incrementation::Fixed { count };
         }
         let largest = self.maximum.unwrap_or(1.0);
-        let initial = self.initial.unwrap_or(0.05_f64.min(largest));
+        let initial = self.initial.unwrap_or(0.05_f64.max(self.minimum.unwrap_or(0.0)).min(largest));
         Incrementation::Automatic {
             initial,
             minimum: self.minimum.unwrap_or(1e-6_f64.min(initial)),

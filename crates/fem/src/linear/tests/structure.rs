@@ -78,9 +78,7 @@ proptest! {
             let mut rows: BTreeSet<usize> = (supernode.begin..supernode.end).collect();
             rows.extend(supernodes.runs(supernode).iter().flat_map(|run| run.begin as usize..run.end as usize));
             prop_assert_eq!(rows.len(), supernode.rows);
-            for column in supernode.begin..supernode.end {
-                prop_assert!(columns[column].is_subset(&rows));
-            }
+            prop_assert!(columns[supernode.begin..supernode.end].iter().all(|column| column.is_subset(&rows)));
             for (local, &row) in rows.iter().enumerate() {
                 prop_assert_eq!(supernodes.local_row(supernode, row), local);
             }

@@ -50,8 +50,8 @@ fn renumbering_does_not_change_the_solution() {
     let renumbered = grid.renumbered(&new);
     let other = renumbered.pattern(Storage::Lower);
     let mut other_values = renumbered.assemble(&other, &brick_stiffness());
-    for dof in 0..36 {
-        let dof = new[dof] as usize;
+    for &dof in &new[..36] {
+        let dof = dof as usize;
         other_values[other.slot(dof, dof).unwrap()] += 1.0;
     }
     let mut other_rhs = vec![0.0; grid.n];
@@ -205,7 +205,9 @@ fn threads_do_not_change_a_bit() {
     for ordering in ORDERINGS {
         let run = |threads: usize, branch_flops: f64| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| solve(&pattern, &values, &rhs, &SolverOptions { branch_flops, ..with_order(Some(ordering)) }))
+            pool.install(|| {
+                solve(&pattern, &values, &rhs, &SolverOptions { branch_flops, ..with_order(Some(ordering)) })
+            })
         };
         let reference = run(1, 0.0);
         for threads in [2, 3, 4] {
