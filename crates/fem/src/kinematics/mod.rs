@@ -309,11 +309,7 @@ fn check_extent(section: &Section, positions: &[Vector3<f64>]) -> Result<(), Fem
     let along = arms().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap_or_else(Vector3::zeros);
     let size = along.norm();
     let off_line = arms().map(|arm| arm.cross(&along).norm()).fold(0.0, f64::max);
-    if off_line > 1e-9 * size * size {
-        Ok(())
-    } else {
-        Err(FemError::DegenerateSection { name: section.name.clone() })
-    }
+    if off_line > 1e-9 * size * size { Ok(()) } else { Err(FemError::DegenerateSection { name: section.name.clone() }) }
 }
 
 /// Gives a sliding coordinate to each node of a section that has a radius (a node on the axis has none).

@@ -95,7 +95,9 @@ pub enum ModelError {
         node: u64,
     },
     /// A corner of a history between two fixed increments.
-    #[error("step \"{step}\": a history has a corner at {knot} of the step, which none of {count} fixed increments ends at")]
+    #[error(
+        "step \"{step}\": a history has a corner at {knot} of the step, which none of {count} fixed increments ends at"
+    )]
     MissedKnot {
         /// Step.
         step: String,

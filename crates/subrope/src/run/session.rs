@@ -98,7 +98,9 @@ impl<'a> Session<'a> {
         #[cfg(feature = "hdf5")]
         if watch.output.lost_frames > 0 {
             let lost = watch.output.lost_frames;
-            watch.observer.on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
+            watch
+                .observer
+                .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
         }
         let interrupted = matches!(outcome, Err(FemError::Interrupted));
         let closed = watch.output.close(&model.analysis);

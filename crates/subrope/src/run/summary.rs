@@ -197,9 +197,12 @@ impl Summary {
     }
 }
 
-/// Four digits that matter.
+/// Four digits that matter; less than a millionth is nothing.
 fn number(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 6) };
+    if value.abs() < 1e-6 {
+        return "0".into();
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 6);
     format!("{value:.*}", digits as usize)
 }
 
