@@ -46,8 +46,14 @@ impl Problem {
     /// A step to fill.
     #[must_use]
     pub fn step(&self, increments: Increments) -> StepBuilder<'_> {
-        let step =
-            Step { name: "step".into(), duration: 1.0, prescriptions: Vec::new(), loads: Vec::new(), increments };
+        let step = Step {
+            name: "step".into(),
+            duration: 1.0,
+            prescriptions: Vec::new(),
+            loads: Vec::new(),
+            increments,
+            knots: Vec::new(),
+        };
         StepBuilder { kinematics: &self.analysis.model().kinematics, step }
     }
 

@@ -109,10 +109,10 @@ fn free_bodies_are_told_by_their_count_of_rigid_motions() {
         );
         let outcome = try_run(&strand("hex8", ELASTIC, one_end, &step), None, 1).unwrap();
         let Err(error) = outcome else { panic!("a free body was solved") };
-        let FemError::RigidModes { count: found, motions } = &error else { panic!("{error}") };
+        let FemError::RigidModes { count: found, motions, .. } = &error else { panic!("{error}") };
         println!("{error}");
         assert_eq!(*found, count, "{motions}");
-        assert!(error.to_string().starts_with(&format!("{count} rigid motion")), "{error}");
+        assert!(error.to_string().contains(&format!("step free: {count} rigid motion")), "{error}");
         assert_eq!(motions.matches("rotation").count(), components.iter().filter(|c| c.starts_with('r')).count());
     }
 }
@@ -134,7 +134,7 @@ fn two_free_bodies_are_told_apart() {
         step = step.nodes(&held, k, 0.0);
     }
     let step = step.build();
-    let Err(FemError::RigidModes { count, motions }) = problem.run(&step) else { panic!("a free body was solved") };
+    let Err(FemError::RigidModes { count, motions, .. }) = problem.run(&step) else { panic!("a free body was solved") };
     assert_eq!(count, 6);
     assert!(motions.contains("body 2") && !motions.contains("body 1"), "{motions}");
 }
@@ -401,22 +401,28 @@ fn cut_increments_go_on() {
 // ------------------------------------------------------------------------------------------------- convergence, energy
 
 /// Quadratic: each residual below a constant times the square of the one before, down to rounding. (Orders estimated
-/// from three residuals scatter where one correction is lucky.)
+/// from three residuals scatter where one correction is lucky.) With friction the last one: before, points may still
+/// switch between sticking and sliding.
 #[test]
 fn newton_converges_quadratically() {
     for formulation in ["hex8", "hex8_mean_volume", "hex8_mean_elongation", "hex27"] {
-        for (name, law, constant) in
-            [("elastic", ELASTIC, 100.0), ("friction", FRICTION, 200.0), ("pressure", PRESSURE, 200.0)]
-        {
+        for (name, law) in [("elastic", ELASTIC), ("friction", FRICTION), ("pressure", PRESSURE)] {
             let run = bent(formulation, law, 8);
             let mut worst = 0.0_f64;
             for row in &run.rows {
                 println!("{formulation}, {name}: {}", scientific(&row.record.residuals));
-                let pairs = row.record.residuals.windows(2).filter(|p| p[0] < 0.01 && p[1] > 1e-12);
-                worst = pairs.map(|p| p[1] / (p[0] * p[0])).fold(worst, f64::max);
+                let pairs: Vec<f64> = row
+                    .record
+                    .residuals
+                    .windows(2)
+                    .filter(|p| p[0] < 0.01 && p[1] > 1e-12)
+                    .map(|p| p[1] / (p[0] * p[0]))
+                    .collect();
+                let first = if name == "elastic" { 0 } else { pairs.len().saturating_sub(1) };
+                worst = pairs[first..].iter().copied().fold(worst, f64::max);
             }
             println!("{formulation}, {name}: largest constant {worst:.1}");
-            assert!(worst < constant, "{formulation}, {name}: constant {worst}");
+            assert!(worst < 100.0, "{formulation}, {name}: constant {worst}");
         }
     }
 }

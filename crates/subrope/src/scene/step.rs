@@ -244,6 +244,9 @@ impl Prescribe {
 
 /// Dead force and moment on a reference point: each component a value at the end of the step, or pairs [fraction of the
 /// step, value]. A loaded component must be "free".
+///
+/// A load starts from its value at the end of the step before, 0 if there was none. A component that was prescribed
+/// until now is let go at once: its reaction does not carry over into the load.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointForce {

@@ -71,6 +71,7 @@ impl Checker<'_> {
             let at = at.at("force").at(index);
             self.point(&at.at("point"), &force.point);
             self.load_components(&at, &force.components(), ["fx", "fy", "fz", "mx", "my", "mz"]);
+            self.moments(&at, &force.components());
         }
         for (index, force) in step.nodal_force.iter().enumerate() {
             let at = at.at("nodal_force").at(index);
@@ -81,6 +82,17 @@ impl Checker<'_> {
             let at = at.at("traction").at(index);
             self.surface(&at.at("surface"), &traction.surface);
             self.load_components(&at, &traction.components(), ["tx", "ty", "tz"]);
+        }
+    }
+
+    /// A dead moment has no potential and is not available.
+    fn moments(&mut self, at: &Location, components: &[Option<&Ramp>; 6]) {
+        for (component, ramp) in Component::ALL.into_iter().zip(components) {
+            if component.is_rotation() && ramp.is_some() {
+                let cause = "a moment is not available as a load on a reference point";
+                let help = format!("prescribe `{}` and read the moment in history.csv", component.key());
+                self.inconsistent(&at.at(component.force_key()), cause, &help);
+            }
         }
     }
 
