@@ -362,7 +362,12 @@ struct Cylinder {
 
 const CYLINDER: [Cylinder; 5] = [
     Cylinder { case: [1.01, 0.0], force: 190.179_784, moment: 87.530_398, more: Some([2.452_188_94, 0.944_662_81]) },
-    Cylinder { case: [1.05, 0.0], force: 1_013.010_338, moment: 403.221_964, more: Some([2.282_649_14, 24.724_625_34]) },
+    Cylinder {
+        case: [1.05, 0.0],
+        force: 1_013.010_338,
+        moment: 403.221_964,
+        more: Some([2.282_649_14, 24.724_625_34]),
+    },
     Cylinder { case: [1.0, 0.01], force: 85.763_542, moment: 86.332_128, more: None },
     Cylinder { case: [1.0, -0.01], force: -92.732_121, moment: -93.187_814, more: None },
     Cylinder { case: [1.02, 0.02], force: 541.230_226, moment: 314.425_376, more: Some([2.321_041_38, 8.724_781_30]) },

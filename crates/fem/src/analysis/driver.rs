@@ -186,7 +186,8 @@ impl Analysis {
             division.check_count(step)?;
             let to = division.next_end();
             let mut record = self.record(step, &division, to, attempt);
-            match self.attempt(step, Attempt { from: division.done, to }, &mut record) {
+            let last_resort = matches!(step.increments, Increments::Fixed(_));
+            match self.attempt(step, Attempt { from: division.done, to, last_resort }, &mut record) {
                 Ok(()) => {
                     self.time += step.duration * (to - division.done);
                     division.advance(to, record.iterations, &self.options);

@@ -13,6 +13,8 @@ use crate::contribution::{Configuration, Request};
 pub struct Attempt {
     pub from: f64,
     pub to: f64,
+    /// Whether to iterate on while there is no headway: nothing shorter can be tried.
+    pub last_resort: bool,
 }
 
 /// The scale of rounding in the residual, over the norm of all element forces.
@@ -61,7 +63,7 @@ impl Analysis {
             if relative <= tolerance && energy <= self.options.energy_tolerance * largest_energy {
                 return Ok(());
             }
-            if record.iterations >= self.options.max_iterations || hopeless(&record.residuals) {
+            if record.iterations >= self.options.max_iterations || hopeless(&record.residuals, attempt.last_resort) {
                 let iterations = record.iterations;
                 return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
             }
@@ -246,13 +248,13 @@ fn relative_residual(iterate: &Iterate) -> f64 {
     if iterate.norm == 0.0 { 0.0 } else { iterate.norm / iterate.reference }
 }
 
-/// Iterations after which an attempt must still make headway.
+/// Iterations after which an attempt that can be shortened must still make headway.
 const PATIENCE: usize = 10;
 
 /// Whether more iterations are wasted: no headway over the last six, or a residual beyond all bounds.
-fn hopeless(residuals: &[f64]) -> bool {
+fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
     let n = residuals.len();
-    let stalled = n > PATIENCE && residuals[n - 1] > 0.1 * residuals[n - 7];
+    let stalled = !last_resort && n > PATIENCE && residuals[n - 1] > 0.1 * residuals[n - 7];
     stalled || residuals.last().is_some_and(|r| *r > 1e12)
 }
 

@@ -11,7 +11,11 @@ impl Checker<'_> {
             let at = top("end").at(index);
             if end.name.contains(|c: char| !(c.is_alphanumeric() || "_-+ ".contains(c))) || end.name.trim().is_empty() {
                 let cause = format!("the name \"{}\" cannot head a column of history.csv", end.name);
-                self.inconsistent(&at.at("name"), cause, "letters, digits, _, -, + and blanks; give the node set by `set`");
+                self.inconsistent(
+                    &at.at("name"),
+                    cause,
+                    "letters, digits, _, -, + and blanks; give the node set by `set`",
+                );
             }
             let key = if end.set.is_some() { "set" } else { "name" };
             self.node_set(&at.at(key), end.set());
