@@ -16,7 +16,7 @@ import subprocess
 MEMBERS = [
     ("hex8", (2, 1, 25)), ("hex8", (4, 2, 50)), ("hex8", (6, 3, 75)),
     ("hex8_mean_elongation", (2, 1, 25)), ("hex8_mean_elongation", (4, 2, 50)), ("hex8_mean_elongation", (6, 3, 75)),
-    ("hex27", (2, 1, 13)), ("hex27", (2, 1, 25)), ("hex27", (4, 2, 38)),
+    ("hex27", (2, 1, 13)), ("hex27", (2, 1, 25)), ("hex27", (2, 1, 38)),
 ]
 
 
