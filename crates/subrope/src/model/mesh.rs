@@ -60,6 +60,7 @@ impl MeshModel {
             Fibres::Helix(helix) => fibre_frames(&mesh, &helical(helix)?)?,
         };
         rename_sets(&mut mesh, entry)?;
+        add_all(&mut mesh);
         Ok((Self { mesh, frames, strand: None }, deck.ignored))
     }
 
@@ -147,11 +148,11 @@ fn strand_of(entry: &scene::Strand, kind: CellKind) -> Result<Strand, ModelError
             core_cells: entry.mesh.core,
             rings: entry.mesh.rings,
             core_fraction: entry.mesh.core_fraction,
+            core_bulge: entry.mesh.core_bulge,
             area: match entry.mesh.area {
                 scene::SectionArea::Exact => SectionArea::Exact,
                 scene::SectionArea::Inscribed => SectionArea::Inscribed,
             },
-            ..Section::default()
         },
         lay: Lay::from_rate(entry.surface_tangent() / entry.radius)?,
         origin: match entry.origin {
@@ -171,8 +172,13 @@ fn add_sets(mesh: &mut Mesh) {
     if let Some(lateral) = mesh.node_sets.get(strand::sets::SURFACE_NODES).cloned() {
         mesh.node_sets.insert(strand::sets::LATERAL.into(), lateral);
     }
-    let all = (0..mesh.point_count() as u32).collect();
-    mesh.node_sets.insert("ALL".into(), all);
+    add_all(mesh);
+}
+
+/// The set of all nodes, unless a deck has its own of that name.
+fn add_all(mesh: &mut Mesh) {
+    let count = mesh.point_count() as u32;
+    mesh.node_sets.entry("ALL".into()).or_insert_with(|| (0..count).collect());
 }
 
 fn per_cell(mesh: &Mesh, frames: &[Option<Matrix3<f64>>]) -> Result<PerCellFrames, ModelError> {
