@@ -195,7 +195,7 @@ name = "END_A"
 name = "END_B"
 [[step]]
 name = "bend"
-increments = {{ fixed = 8 }}
+increments = {{ fixed = 4 }}
 [step.bend]
 angle = 90.0
 [solver]
@@ -214,7 +214,7 @@ fn straight_strand_moment(run: &Run, length: f64) -> f64 {
 #[test]
 fn straight_isotropic_strand_bends_to_a_half_circle() {
     let length = 200.0;
-    let run = straight_strand(length, 80);
+    let run = straight_strand(length, 60);
     let moment = straight_strand_moment(&run, length);
     println!("moment {moment:.6} EI pi/L");
     assert!((moment - 1.0).abs() < 1e-3, "moment {moment} EI pi/L");
@@ -242,7 +242,7 @@ fn straight_isotropic_strand_bends_to_a_half_circle() {
 #[test]
 fn moment_of_st_venant_kirchhoff_lies_between_its_bounds() {
     let length = 100.0;
-    let moment = straight_strand_moment(&straight_strand(length, 80), length);
+    let moment = straight_strand_moment(&straight_strand(length, 60), length);
     let k2 = (PI / length).powi(2);
     println!("moment {moment:.6} EI pi/L: 1 - {:.3} k^2", (1.0 - moment) / k2);
     let discretisation = 0.05 * k2;
