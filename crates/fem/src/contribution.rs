@@ -21,6 +21,8 @@ pub struct Configuration<'a> {
     pub committed: &'a [f64],
     /// Length of the time increment \[s\].
     pub time_increment: f64,
+    /// Time at the end of the increment \[s\].
+    pub time: f64,
     /// Temperature \[K\].
     pub temperature: f64,
     /// Whether the calling thread may share its work.
@@ -38,6 +40,25 @@ pub struct Energies {
     pub dissipated_mid: [f64; 2],
     /// Spent in this increment by viscous stabilisation.
     pub stabilising: f64,
+    /// Stored in the compliance of contacts; not part of `stored`.
+    pub contact_stored: f64,
+    /// Dissipated in this increment by friction of contacts, mid-point value.
+    pub contact_friction: f64,
+    /// Put in during this increment by pressing apart surfaces that overlapped at the start, mid-point value.
+    pub interference: f64,
+}
+
+impl Energies {
+    /// None of any kind.
+    pub const ZERO: Self = Self {
+        stored: 0.0,
+        potential: 0.0,
+        dissipated_mid: [0.0; 2],
+        stabilising: 0.0,
+        contact_stored: 0.0,
+        contact_friction: 0.0,
+        interference: 0.0,
+    };
 }
 
 impl std::ops::AddAssign for Energies {
@@ -47,6 +68,9 @@ impl std::ops::AddAssign for Energies {
         self.dissipated_mid[0] += other.dissipated_mid[0];
         self.dissipated_mid[1] += other.dissipated_mid[1];
         self.stabilising += other.stabilising;
+        self.contact_stored += other.contact_stored;
+        self.contact_friction += other.contact_friction;
+        self.interference += other.interference;
     }
 }
 
@@ -58,6 +82,15 @@ impl std::ops::AddAssign for Energies {
 pub trait Sink {
     /// Adds one element.
     fn add(&mut self, element: usize, force: &[f64], stiffness: Option<&[f64]>);
+}
+
+/// What a contribution says of a converged iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The state can be committed.
+    Accepted,
+    /// The contribution has moved its multipliers: iterate on.
+    Augmented,
 }
 
 /// Something that adds to the residual and to the tangent.
@@ -87,6 +120,37 @@ pub trait Contribution: Send {
 
     /// The trial becomes the committed state.
     fn commit(&mut self);
+
+    /// A new attempt starts from the committed state.
+    fn revert(&mut self) {}
+
+    /// Makes the list of elements fit for nodal displacements \[mm\]; says whether it has changed, so that the pattern
+    /// must be made again. Only contacts have elements that come and go.
+    ///
+    /// # Errors
+    /// A [`FemError`] when bodies have moved where no list can follow.
+    fn prepare(&mut self, displacement: &[f64]) -> Result<bool, FemError> {
+        let _ = displacement;
+        Ok(false)
+    }
+
+    /// Looks at a converged iteration: an augmented Lagrangian moves its multipliers here.
+    ///
+    /// # Errors
+    /// A recoverable [`FemError`] when that does not help.
+    fn review(&mut self) -> Result<Verdict, FemError> {
+        Ok(Verdict::Accepted)
+    }
+
+    /// Whether an assembly leaves out most of its elements: the places of their entries are then found on first use.
+    fn is_intermittent(&self) -> bool {
+        false
+    }
+
+    /// The contribution itself, for those who know its type and read its results.
+    fn as_any(&self) -> Option<&dyn std::any::Any> {
+        None
+    }
 
     /// Its integration points, when it is a solid.
     fn fields(&self) -> Option<&dyn SolidFields> {

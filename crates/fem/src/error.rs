@@ -29,6 +29,17 @@ pub enum FemError {
     /// The residual holds a number that is not finite.
     #[error("the residual is not finite: shorten the increment")]
     NonFiniteResidual,
+    /// Surfaces touch where the pattern of the matrix has no place for them.
+    #[error("surfaces touch outside the candidates of the search: search again")]
+    SearchOutdated,
+    /// A contribution of another crate gave no answer.
+    #[error("{source}")]
+    Contribution {
+        /// Cause.
+        source: std::sync::Arc<dyn std::error::Error + Send + Sync>,
+        /// Whether a shorter increment may help.
+        recoverable: bool,
+    },
     /// The linear solver gave up.
     #[error(transparent)]
     Linear(#[from] LinearError),
@@ -163,7 +174,12 @@ impl FemError {
     pub fn is_recoverable(&self) -> bool {
         match self {
             Self::Law { source, .. } => !matches!(source, LawError::Parameter { .. } | LawError::NoFibreTerm),
-            Self::MeanVolume { .. } | Self::NonFiniteResidual | Self::Linear(_) | Self::NotConverged { .. } => true,
+            Self::MeanVolume { .. }
+            | Self::NonFiniteResidual
+            | Self::SearchOutdated
+            | Self::Linear(_)
+            | Self::NotConverged { .. } => true,
+            Self::Contribution { recoverable, .. } => *recoverable,
             _ => false,
         }
     }

@@ -56,6 +56,8 @@ pub struct Analysis {
     pub(super) time: f64,
     pub(super) steps_done: usize,
     pub(super) work: Workspace,
+    /// Displacements at which surfaces touched outside the pattern.
+    pub(super) outdated_at: Vec<f64>,
     /// Scale that turns moments into forces \[mm\].
     pub(super) lever: f64,
 }
@@ -90,6 +92,7 @@ impl Analysis {
             time: 0.0,
             steps_done: 0,
             work: Workspace::default(),
+            outdated_at: Vec::new(),
         }
     }
 
@@ -265,7 +268,23 @@ impl Analysis {
         if self.system.is_some() && prescribed == self.prescribed {
             return Ok(());
         }
+        prepare(&mut self.model.contributions, &self.displacement)?;
         self.check_held(step)?;
+        self.make_system(prescribed)
+    }
+
+    /// Makes the lists of elements of contacts fit for nodal displacements, and the system with them when they change.
+    pub(super) fn search(&mut self, displacement: Option<&[f64]>) -> Result<(), FemError> {
+        let displacement = displacement.unwrap_or(&self.displacement);
+        if prepare(&mut self.model.contributions, displacement)? {
+            let prescribed = std::mem::take(&mut self.prescribed);
+            self.totals.searches += 1;
+            self.make_system(prescribed)?;
+        }
+        Ok(())
+    }
+
+    fn make_system(&mut self, prescribed: Vec<bool>) -> Result<(), FemError> {
         self.system = None;
         let (model, options) = (&self.model, &self.solver_options);
         let system = self
@@ -276,6 +295,11 @@ impl Analysis {
         self.prescribed = prescribed;
         Ok(())
     }
+}
+
+/// Whether the elements of a contribution have changed.
+fn prepare(contributions: &mut [Box<dyn Contribution>], displacement: &[f64]) -> Result<bool, FemError> {
+    contributions.iter_mut().try_fold(false, |changed, c| Ok(c.prepare(displacement)? || changed))
 }
 
 /// Largest distance of a tied node from its reference point; one when nothing is tied.

@@ -25,6 +25,11 @@ struct Comparison {
     base_potential: f64,
 }
 
+/// Whether an error is not helped by a shorter correction.
+fn ends_search(error: &FemError) -> bool {
+    !error.is_recoverable() || matches!(error, FemError::SearchOutdated)
+}
+
 impl Analysis {
     /// Moves the base along the correction and leaves it evaluated there with its tangent.
     pub(super) fn advance(&mut self, work: &mut Workspace, slope: f64) -> Result<(), FemError> {
@@ -43,7 +48,7 @@ impl Analysis {
                     }
                     search.length = self.shorter(&search, work);
                 }
-                Err(e) if !e.is_recoverable() || trial + 1 == TRIALS => return Err(e),
+                Err(e) if ends_search(&e) || trial + 1 == TRIALS => return Err(e),
                 Err(_) => search.length *= 0.3,
             }
         }

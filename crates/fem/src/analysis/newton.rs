@@ -6,7 +6,7 @@ use super::step::{Prescription, Step};
 use super::workspace::{Iterate, Workspace};
 use crate::FemError;
 use crate::assembly::{Evaluation, Jump};
-use crate::contribution::{Configuration, Request};
+use crate::contribution::{Configuration, Request, Verdict};
 
 /// Fractions of the step between which an attempt goes.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,9 @@ pub struct Attempt {
 
 /// The scale of rounding in the residual, over the norm of all element forces.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Most new searches for touching surfaces in one attempt.
+const SEARCHES: usize = 10;
 
 /// Part of the norm of the element forces below which reactions do not count as a reference.
 const SMALL_REACTION: f64 = 1e-6;
@@ -35,9 +38,17 @@ impl Analysis {
         attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
+        self.search(None)?;
         let mut work = std::mem::take(&mut self.work);
         work.target.fill(step, attempt, &self.step_start, &self.released);
-        let outcome = self.iterate(&mut work, attempt, record);
+        let mut outcome = self.iterate(&mut work, attempt, record);
+        for _ in 0..SEARCHES {
+            if !matches!(outcome, Err(FemError::SearchOutdated)) {
+                break;
+            }
+            let at = std::mem::take(&mut self.outdated_at);
+            outcome = self.search(Some(&at)).and_then(|()| self.iterate(&mut work, attempt, record));
+        }
         self.totals.iterations += record.iterations;
         if outcome.is_ok() {
             self.totals.unstable_increments += usize::from(record.negative_pivots.is_some_and(|n| n > 0));
@@ -53,17 +64,30 @@ impl Analysis {
         attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
+        self.model.contributions.iter_mut().for_each(|c| c.revert());
         self.first_iterate(work, attempt, record)?;
         let mut largest_energy = 0.0_f64;
         let mut energy = 0.0;
+        // Iterations and residuals before this round of multipliers.
+        let (mut spent, mut seen) = (0, 0);
         loop {
             let tolerance = self.options.force_tolerance;
             let relative = relative_residual(&work.base);
             record.residuals.push(relative);
             if relative <= tolerance && energy <= self.options.energy_tolerance * largest_energy {
-                return Ok(());
+                if !self.review()? {
+                    return Ok(());
+                }
+                self.totals.augmentations += 1;
+                self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+                (spent, seen) = (record.iterations, record.residuals.len());
+                if relative_residual(&work.base) <= tolerance {
+                    continue;
+                }
             }
-            if record.iterations >= self.options.max_iterations || hopeless(&record.residuals, attempt.last_resort) {
+            if record.iterations >= spent + self.options.max_iterations
+                || hopeless(&record.residuals[seen..], attempt.last_resort)
+            {
                 let iterations = record.iterations;
                 return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
             }
@@ -75,6 +99,12 @@ impl Analysis {
             // Energy of this correction in the new residual.
             energy = self.slope(work).abs();
         }
+    }
+
+    /// Whether a contribution has moved its multipliers, so that the iteration must go on.
+    fn review(&mut self) -> Result<bool, FemError> {
+        let contributions = &mut self.model.contributions;
+        contributions.iter_mut().try_fold(false, |moved, c| Ok(moved | (c.review()? == Verdict::Augmented)))
     }
 
     /// Continues the last increment, or goes along the committed tangent.
@@ -90,8 +120,9 @@ impl Analysis {
                 *q = committed + ratio * change;
             }
             work.target.impose(&mut work.base.q);
-            if self.evaluate(&mut work.base, &work.target, None, Request::Tangent).is_ok() {
-                return Ok(());
+            match self.evaluate(&mut work.base, &work.target, None, Request::Tangent) {
+                Err(error) if !matches!(error, FemError::SearchOutdated) => {}
+                done => return done,
             }
         }
         self.predict(work, record)
@@ -159,6 +190,7 @@ impl Analysis {
                 displacement: &iterate.displacement,
                 committed: &self.displacement,
                 time_increment: target.time_increment,
+                time: self.time + target.time_increment,
                 temperature: self.options.temperature,
                 parallel: self.threads > 1,
             },
@@ -170,7 +202,11 @@ impl Analysis {
         let contributions = &mut self.model.contributions;
         let residual = &mut iterate.residual;
         let assembled =
-            self.phases.measure(Phase::Assembly, || system.assemble(kinematics, contributions, &at, residual))?;
+            self.phases.measure(Phase::Assembly, || system.assemble(kinematics, contributions, &at, residual));
+        if matches!(assembled, Err(FemError::SearchOutdated)) {
+            self.outdated_at.clone_from(&iterate.displacement);
+        }
+        let assembled = assembled?;
         let work: f64 = target.nodal.iter().zip(&iterate.displacement).map(|(f, u)| f * u).sum();
         let point_work: f64 = target.coordinates.iter().zip(&iterate.q).map(|(f, q)| f * q).sum();
         iterate.residual.iter_mut().zip(&target.coordinates).for_each(|(r, f)| *r -= f);
@@ -217,10 +253,13 @@ impl Analysis {
             external += load * (new.displacement[i] - self.displacement[i]);
         }
         self.largest_reference = self.largest_reference.max(new.reference);
-        self.totals.external_work += external;
+        self.totals.interference += new.energies.interference;
+        self.totals.external_work += external + new.energies.interference;
         self.totals.work_scale = self.totals.work_scale.max(self.totals.external_work.abs());
         self.totals.stored = new.energies.stored;
         self.totals.stabilising += new.energies.stabilising;
+        self.totals.contact_stored = new.energies.contact_stored;
+        self.totals.contact_friction += new.energies.contact_friction;
         for mode in 0..2 {
             self.totals.dissipated_mid[mode] += new.energies.dissipated_mid[mode];
         }

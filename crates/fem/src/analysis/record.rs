@@ -50,6 +50,12 @@ pub struct Totals {
     pub dissipated_mid: [f64; 2],
     /// Spent by viscous stabilisation.
     pub stabilising: f64,
+    /// Stored now in the compliance of contacts.
+    pub contact_stored: f64,
+    /// Dissipated by friction of contacts, mid-point values.
+    pub contact_friction: f64,
+    /// Put in by pressing apart surfaces that overlapped at the start; part of `external_work`.
+    pub interference: f64,
     /// Converged increments.
     pub increments: usize,
     /// Newton iterations, those of failed attempts included.
@@ -58,16 +64,22 @@ pub struct Totals {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Rounds in which an augmented Lagrangian moved its multipliers.
+    pub augmentations: usize,
+    /// Patterns made anew because surfaces touched elsewhere.
+    pub searches: usize,
     /// Converged increments whose last tangent had negative pivots.
     pub unstable_increments: usize,
 }
 
 impl Totals {
-    /// `external work - stored - dissipated - stabilising` over the largest external work so far, with mid-point
-    /// dissipation.
+    /// `external work - stored - dissipated - stabilising`, contacts included, over the largest external work so far,
+    /// with mid-point dissipation.
     #[must_use]
     pub fn energy_error(&self) -> f64 {
-        let balance = self.external_work - self.stored - self.dissipated_mid.iter().sum::<f64>() - self.stabilising;
+        let kept = self.stored + self.contact_stored;
+        let lost = self.dissipated_mid.iter().sum::<f64>() + self.contact_friction + self.stabilising;
+        let balance = self.external_work - kept - lost;
         if self.work_scale == 0.0 { 0.0 } else { balance / self.work_scale }
     }
 }

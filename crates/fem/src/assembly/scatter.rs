@@ -7,8 +7,11 @@ use crate::linear::{SparsePattern, Storage};
 
 /// Positions of one contribution's entries. Entries that belong to prescribed coordinates, and the lower half of a
 /// symmetric diagonal block, go to a spare position behind the last value.
+///
+/// Elements that come and go are placed when they are first needed: of all the pairs of faces that may touch few do.
 pub struct ScatterMap {
-    starts: Vec<usize>,
+    /// Range of every element in `slots`; empty until it is placed.
+    ranges: Vec<(usize, usize)>,
     slots: Vec<u32>,
     /// Reduced coordinates of the elements with tied nodes, by element.
     tied: Vec<(u32, ElementMap)>,
@@ -65,28 +68,47 @@ impl Finder<'_> {
 }
 
 impl ScatterMap {
-    /// Finds the position of every entry.
+    /// Finds the position of every entry; of an intermittent contribution none yet.
     pub fn new(
         kinematics: &Kinematics,
         equations: &Equations,
         pattern: &SparsePattern,
         contribution: &dyn Contribution,
     ) -> Self {
-        let finder = Finder { pattern, equations, spare: pattern.nnz() as u32 };
-        let symmetric = pattern.storage() == Storage::Lower;
         let count = contribution.element_count();
-        let mut map = Self { starts: Vec::with_capacity(count), slots: Vec::new(), tied: Vec::new() };
-        for e in 0..count {
-            map.starts.push(map.slots.len());
-            let element = ElementMap::new(kinematics, contribution.element_nodes(e));
-            if element.tied {
-                map.push_tied(&finder, &element.coordinates, symmetric);
-                map.tied.push((e as u32, element));
-            } else {
-                map.push_free(&finder, &element.coordinates, symmetric);
+        let mut map = Self { ranges: vec![(0, 0); count], slots: Vec::new(), tied: Vec::new() };
+        if !contribution.is_intermittent() {
+            for e in 0..count {
+                map.place(e, kinematics, equations, pattern, contribution.element_nodes(e));
             }
         }
         map
+    }
+
+    /// Finds the positions of one element unless they are known.
+    pub fn place(
+        &mut self,
+        element: usize,
+        kinematics: &Kinematics,
+        equations: &Equations,
+        pattern: &SparsePattern,
+        nodes: &[u32],
+    ) {
+        if self.ranges[element].1 > 0 {
+            return;
+        }
+        let finder = Finder { pattern, equations, spare: pattern.nnz() as u32 };
+        let symmetric = pattern.storage() == Storage::Lower;
+        let start = self.slots.len();
+        let map = ElementMap::new(kinematics, nodes);
+        if map.tied {
+            self.push_tied(&finder, &map.coordinates, symmetric);
+            let at = self.tied.partition_point(|(e, _)| (*e as usize) < element);
+            self.tied.insert(at, (element as u32, map));
+        } else {
+            self.push_free(&finder, &map.coordinates, symmetric);
+        }
+        self.ranges[element] = (start, self.slots.len());
     }
 
     /// Order of [`add_free`]: row node, row component, column component, column node.
@@ -114,8 +136,8 @@ impl ScatterMap {
     }
 
     fn slots_of(&self, element: usize) -> &[u32] {
-        let end = self.starts.get(element + 1).copied().unwrap_or(self.slots.len());
-        &self.slots[self.starts[element]..end]
+        let (start, end) = self.ranges[element];
+        &self.slots[start..end]
     }
 
     /// Reduced coordinates of an element with tied nodes.

@@ -116,9 +116,11 @@ impl System {
         let mut out = Assembled::default();
         let mut scale = 0.0;
         let symmetric = self.is_symmetric();
-        for ((contribution, map), nodes) in contributions.iter_mut().zip(&self.maps).zip(&self.nodes) {
+        for ((contribution, map), nodes) in contributions.iter_mut().zip(&mut self.maps).zip(&self.nodes) {
             let mut sink = Assembler {
                 kinematics,
+                equations: &self.equations,
+                pattern: &self.pattern,
                 ties: &self.ties,
                 map,
                 nodes,
@@ -247,8 +249,10 @@ impl Nodes {
 
 struct Assembler<'a> {
     kinematics: &'a Kinematics,
+    equations: &'a Equations,
+    pattern: &'a SparsePattern,
     ties: &'a [Tie],
-    map: &'a ScatterMap,
+    map: &'a mut ScatterMap,
     nodes: &'a Nodes,
     symmetric: bool,
     own_symmetry: bool,
@@ -273,6 +277,7 @@ impl Sink for Assembler<'_> {
         if let Some(jump) = self.jump {
             self.add_jump(nodes, matrix, jump.displacement);
         }
+        self.map.place(element, self.kinematics, self.equations, self.pattern, nodes);
         match self.map.tied(element) {
             None if self.symmetric || !self.own_symmetry => {
                 self.map.add_free(element, n, self.symmetric, matrix, self.values);

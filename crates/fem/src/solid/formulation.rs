@@ -61,7 +61,7 @@ impl<const N: usize> ElementResult<N> {
             second_piola: [Vector6::zeros(); MAX_POINTS],
             stiffness: [[[[0.0; N]; 3]; N]; 3],
             force: [[0.0; N]; 3],
-            energies: Energies { stored: 0.0, potential: 0.0, dissipated_mid: [0.0; 2], stabilising: 0.0 },
+            energies: Energies::ZERO,
             failure: None,
         }
     }

@@ -1,0 +1,277 @@
+//! Forces and tangent of one contact point.
+//!
+//! Everything that a point does depends on the nodes through six vectors, each a combination of nodal vectors with scalar
+//! weights: `r` (point less foot), the tangents `a_1`, `a_2` and the second derivatives `x_,11`, `x_,12`, `x_,22` at the
+//! foot. Forces and tangent are written in these 18 numbers and then spread to the nodes.
+//!
+//! With `g = n . r`, `m_ij = a_i . a_j`, `b_ij = n . x_,ij`, `H = m - g b`, at fixed foot `c_i = a_i . dr`,
+//! `d_i = n . da_i`, `h = c + g d`:
+//! `dg = n . dr`, `dxi = H^-1 h`, `d2g = -(c m^-1 b H^-1 c + d H^-1 c + c H^-1 d + g d H^-1 d)`, and the second variation of
+//! `xi` from that of `r . a_i = 0`. The work of a point is `-p dg + t_i dxi_i`.
+
+use nalgebra::{Matrix2, Vector2, Vector3};
+
+use crate::foot::{Foot, Local};
+use crate::law::Friction;
+use crate::patch::{PATCH_NODES, SECOND};
+
+/// Numbers that a point depends on.
+pub const Z: usize = 18;
+
+/// A linear form of the 18 numbers.
+type Form = [f64; Z];
+
+/// Forces and tangent in the 18 numbers, per reference area.
+#[derive(Clone, Debug)]
+pub struct PointTerms {
+    /// Work per unit of every number.
+    pub force: Form,
+    /// Derivative of the force.
+    pub tangent: [Form; Z],
+    /// Vectors in use: three without friction, six with.
+    pub blocks: usize,
+}
+
+fn form(block: usize, v: &Vector3<f64>) -> Form {
+    let mut out = [0.0; Z];
+    out[3 * block..3 * block + 3].copy_from_slice(v.as_slice());
+    out
+}
+
+fn add(out: &mut Form, scale: f64, v: &Form) {
+    out.iter_mut().zip(v).for_each(|(o, x)| *o += scale * x);
+}
+
+fn combine(scale: [f64; 2], of: &[Form; 2]) -> Form {
+    let mut out = [0.0; Z];
+    add(&mut out, scale[0], &of[0]);
+    add(&mut out, scale[1], &of[1]);
+    out
+}
+
+impl PointTerms {
+    fn outer(&mut self, scale: f64, row: &Form, column: &Form) {
+        for (line, &r) in self.tangent.iter_mut().zip(row) {
+            if r != 0.0 {
+                let f = scale * r;
+                line.iter_mut().zip(column).for_each(|(o, c)| *o += f * c);
+            }
+        }
+    }
+
+    fn outer_both(&mut self, scale: f64, one: &Form, other: &Form) {
+        self.outer(scale, one, other);
+        self.outer(scale, other, one);
+    }
+
+    /// The tangent replaced by its symmetric part.
+    fn symmetrise(&mut self) {
+        for i in 0..Z {
+            for j in 0..i {
+                let mean = 0.5 * (self.tangent[i][j] + self.tangent[j][i]);
+                (self.tangent[i][j], self.tangent[j][i]) = (mean, mean);
+            }
+        }
+    }
+}
+
+/// Geometry of a point that both terms use.
+struct Variations {
+    inverse: Matrix2<f64>,
+    /// `dg`.
+    gap: Form,
+    /// `c_i`.
+    across: [Form; 2],
+    /// `d_i`.
+    tilt: [Form; 2],
+    /// `dxi_i`.
+    place: [Form; 2],
+}
+
+impl Variations {
+    fn new(foot: &Foot) -> Option<Self> {
+        let local = &foot.local;
+        let hessian = local.metric() - local.bending(&foot.normal) * foot.gap;
+        let inverse = hessian.try_inverse()?;
+        let across = [form(0, &local.tangents[0]), form(0, &local.tangents[1])];
+        let tilt = [form(1, &foot.normal), form(2, &foot.normal)];
+        let h: [Form; 2] = std::array::from_fn(|i| {
+            let mut out = across[i];
+            add(&mut out, foot.gap, &tilt[i]);
+            out
+        });
+        let place = std::array::from_fn(|i| combine([inverse[(i, 0)], inverse[(i, 1)]], &h));
+        Some(Self { inverse, gap: form(0, &foot.normal), across, tilt, place })
+    }
+}
+
+/// Forces and tangent of a point under pressure `p` with slope `dp/dg`, with or without friction; [`None`] where the foot
+/// is not unique. `third` are the third derivatives of the surface at the foot.
+#[must_use]
+pub fn terms(
+    foot: &Foot,
+    pressure: (f64, f64),
+    friction: Option<(&Friction, &[Vector3<f64>; 4])>,
+    symmetric: bool,
+) -> Option<PointTerms> {
+    let v = Variations::new(foot)?;
+    let blocks = if friction.is_some() { 6 } else { 3 };
+    let mut out = PointTerms { force: [0.0; Z], tangent: [[0.0; Z]; Z], blocks };
+    add_normal(foot, pressure, &v, &mut out)?;
+    if let Some((friction, third)) = friction {
+        add_friction(foot, friction, third, &v, &mut out);
+        if symmetric {
+            out.symmetrise();
+        }
+    }
+    Some(out)
+}
+
+fn add_normal(foot: &Foot, (p, slope): (f64, f64), v: &Variations, out: &mut PointTerms) -> Option<()> {
+    add(&mut out.force, -p, &v.gap);
+    out.outer(-slope, &v.gap, &v.gap);
+    let local = &foot.local;
+    let curving = local.metric().try_inverse()? * local.bending(&foot.normal) * v.inverse;
+    for i in 0..2 {
+        for j in 0..2 {
+            out.outer(p * curving[(i, j)], &v.across[i], &v.across[j]);
+            out.outer_both(p * v.inverse[(i, j)], &v.tilt[i], &v.across[j]);
+            out.outer(p * foot.gap * v.inverse[(i, j)], &v.tilt[i], &v.tilt[j]);
+        }
+    }
+    Some(())
+}
+
+fn add_friction(
+    foot: &Foot,
+    friction: &Friction,
+    third: &[Vector3<f64>; 4],
+    v: &Variations,
+    out: &mut PointTerms,
+) {
+    let t = &friction.traction;
+    for i in 0..2 {
+        add(&mut out.force, t[i], &v.place[i]);
+        let mut change = combine([friction.by_place[(i, 0)], friction.by_place[(i, 1)]], &v.place);
+        add(&mut change, friction.by_gap[i], &v.gap);
+        out.outer(1.0, &v.place[i], &change);
+    }
+    add_second_variation(foot, &(v.inverse * t), third, v, out);
+}
+
+/// `tau_i H_ij d2xi_j`, from the second variation of `r . a_i = 0`.
+fn add_second_variation(
+    foot: &Foot,
+    tau: &Vector2<f64>,
+    third: &[Vector3<f64>; 4],
+    v: &Variations,
+    out: &mut PointTerms,
+) {
+    let Local { tangents, second, .. } = &foot.local;
+    let along = tangents[0] * tau[0] + tangents[1] * tau[1];
+    for j in 0..2 {
+        out.outer_both(-1.0, &form(1 + j, &along), &v.place[j]);
+        for k in 0..2 {
+            let steep = third[j + k] * tau[0] + third[j + k + 1] * tau[1];
+            let bent = foot.gap * foot.normal.dot(&steep) - along.dot(&second[SECOND[j][k]]);
+            out.outer(bent, &v.place[j], &v.place[k]);
+            let lifted = foot.normal * (foot.gap * tau[k]);
+            out.outer_both(1.0, &form(3 + SECOND[k][j], &lifted), &v.place[j]);
+        }
+    }
+    for axis in 0..3 {
+        // Dr and tau_i Da_i, one component at a time.
+        let mut moved = [0.0; Z];
+        moved[axis] = 1.0;
+        let mut turned = [0.0; Z];
+        for i in 0..2 {
+            add(&mut moved, -tangents[i][axis], &v.place[i]);
+            turned[3 * (1 + i) + axis] += tau[i];
+            let curve = second[SECOND[i][0]][axis] * tau[0] + second[SECOND[i][1]][axis] * tau[1];
+            add(&mut turned, curve, &v.place[i]);
+        }
+        out.outer_both(1.0, &moved, &turned);
+    }
+}
+
+/// Force and tangent of a pair of patches, component-major: entry `k n + a` is component `k` of node `a`, those of the
+/// secondary patch first.
+#[derive(Clone, Debug, Default)]
+pub struct PairBuffer {
+    /// Forces \[N\].
+    pub force: Vec<f64>,
+    /// Stiffness \[N/mm\], row-major.
+    pub stiffness: Vec<f64>,
+}
+
+impl PairBuffer {
+    /// Zeros for `n` nodes.
+    pub fn reset(&mut self, n: usize, tangent: bool) {
+        self.force.clear();
+        self.force.resize(3 * n, 0.0);
+        self.stiffness.clear();
+        if tangent {
+            self.stiffness.resize(9 * n * n, 0.0);
+        }
+    }
+
+    /// Spreads the terms of a point with area `area` \[mm^2\] to the nodes; `own` are the shape functions of the point on
+    /// the secondary patch, `count` its nodes.
+    pub fn spread(&mut self, terms: &PointTerms, own: &[f64; PATCH_NODES], count: usize, foot: &Foot, area: f64) {
+        let shape = &foot.local.shape;
+        let other = shape.n;
+        let n = count + other;
+        let mut weights = [[0.0; 2 * PATCH_NODES]; 6];
+        weights[0][..count].copy_from_slice(&own[..count]);
+        for b in 0..other {
+            weights[0][count + b] = -shape.value[b];
+            weights[1][count + b] = shape.first[0][b];
+            weights[2][count + b] = shape.first[1][b];
+            for k in 0..3 {
+                weights[3 + k][count + b] = shape.second[k][b];
+            }
+        }
+        let used = &weights[..terms.blocks];
+        for k in 0..3 {
+            for (i, w) in used.iter().enumerate() {
+                let f = area * terms.force[3 * i + k];
+                let target = &mut self.force[k * n..(k + 1) * n];
+                target.iter_mut().zip(w).for_each(|(o, w)| *o += f * w);
+            }
+        }
+        if self.stiffness.is_empty() {
+            return;
+        }
+        for k in 0..3 {
+            for m in 0..3 {
+                self.spread_block(terms, used, (k, m), (count, n), area);
+            }
+        }
+    }
+
+    /// Components `k` of rows and `m` of columns.
+    fn spread_block(
+        &mut self,
+        terms: &PointTerms,
+        weights: &[[f64; 2 * PATCH_NODES]],
+        (k, m): (usize, usize),
+        (count, n): (usize, usize),
+        area: f64,
+    ) {
+        for (i, row_weights) in weights.iter().enumerate() {
+            // Row i of the block times the weights of the columns.
+            let mut line = [0.0; 2 * PATCH_NODES];
+            for (j, column_weights) in weights.iter().enumerate() {
+                let f = area * terms.tangent[3 * i + k][3 * j + m];
+                if f != 0.0 {
+                    line.iter_mut().zip(column_weights).for_each(|(o, w)| *o += f * w);
+                }
+            }
+            let first = if i == 0 { 0 } else { count };
+            for (a, &w) in row_weights.iter().enumerate().take(n).skip(first) {
+                let at = (k * n + a) * 3 * n + m * n;
+                self.stiffness[at..at + n].iter_mut().zip(&line).for_each(|(o, l)| *o += w * l);
+            }
+        }
+    }
+}
