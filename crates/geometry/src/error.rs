@@ -39,6 +39,8 @@ pub enum Parameter {
     Layers,
     /// Number of strands in a rope.
     Strands,
+    /// Distance between neighbouring strands over their radius \[-\].
+    Gap,
 }
 
 impl fmt::Display for Parameter {
@@ -61,6 +63,7 @@ impl fmt::Display for Parameter {
             Self::Rings => "number of rings",
             Self::Layers => "number of layers",
             Self::Strands => "number of strands",
+            Self::Gap => "gap over the radius",
         })
     }
 }
@@ -124,6 +127,32 @@ pub enum GeometryError {
         radius: f64,
         /// Lay length \[mm\].
         lay_length: f64,
+    },
+    /// An outer diameter gives the lay only of strands that touch each other and have no core.
+    #[error(
+        "the outer diameter {outer_diameter} mm does not give the lay: it does for touching strands without a core"
+    )]
+    LayUndetermined {
+        /// Outer diameter \[mm\].
+        outer_diameter: f64,
+    },
+    /// No lay angle from 0 to 60 deg lets the strands touch at this outer diameter.
+    #[error("no lay meets the outer diameter {outer_diameter} mm; straight strands have {least} mm")]
+    OuterDiameter {
+        /// Outer diameter \[mm\].
+        outer_diameter: f64,
+        /// Outer diameter without lay, the least possible one \[mm\].
+        least: f64,
+    },
+    /// Strands laid on a core overlap each other.
+    #[error("{strands} strands on the core (helix radius {helix_radius} mm) overlap: gap {gap} of their radius")]
+    OuterStrandsOverlap {
+        /// Number of outer strands.
+        strands: usize,
+        /// Radius of their helices \[mm\].
+        helix_radius: f64,
+        /// Gap between neighbours over their radius, negative.
+        gap: f64,
     },
     /// A strand on a helical axis is thicker than the radius of curvature of that axis: its sections overlap.
     #[error("strand radius {radius} mm reaches the radius of curvature {curvature_radius} mm of its axis")]
