@@ -7,6 +7,7 @@
 //! - [`section`], [`strand`]: meshes of sections and strands;
 //! - [`rope`]: ropes of several strands, their helix radius, lay and mesh;
 //! - [`surface_grid`], [`spline`]: surface nodes of a strand and the smooth surface through their net;
+//! - [`sizing`]: from filaments to the rope, what follows and what contradicts;
 //! - [`quality`]: Jacobian, shape, volume and fibre angles of a mesh.
 //!
 //! Lengths are in mm, angles in radians, everything is in the reference configuration.
@@ -22,6 +23,7 @@ pub mod quadrilateral;
 pub mod quality;
 pub mod rope;
 pub mod section;
+pub mod sizing;
 pub mod spline;
 pub mod strand;
 pub mod surface_grid;
@@ -40,5 +42,6 @@ pub use rope::{
     HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeStrand, Sense, YarnLay, YarnLayBy,
 };
 pub use section::{Section, SectionArea, SectionMesh};
+pub use sizing::{Hierarchy, Quantity, SizingReport};
 pub use strand::{MeshLines, Strand, StrandAxis, StrandEnds, StrandFibres, StrandOrigin};
 pub use surface_grid::SurfaceGrid;
