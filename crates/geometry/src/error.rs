@@ -39,6 +39,8 @@ pub enum Parameter {
     Layers,
     /// Number of strands in a rope.
     Strands,
+    /// Degree of compaction of strands \[-\].
+    Compaction,
     /// Distance between neighbouring strands over their radius \[-\].
     Gap,
 }
@@ -63,6 +65,7 @@ impl fmt::Display for Parameter {
             Self::Rings => "number of rings",
             Self::Layers => "number of layers",
             Self::Strands => "number of strands",
+            Self::Compaction => "degree of compaction",
             Self::Gap => "gap over the radius",
         })
     }
@@ -128,21 +131,27 @@ pub enum GeometryError {
         /// Lay length \[mm\].
         lay_length: f64,
     },
-    /// An outer diameter gives the lay only of strands that touch each other and have no core.
+    /// An outer diameter determines the lay or the compaction of touching strands without a core, and one of them only.
     #[error(
-        "the outer diameter {outer_diameter} mm does not give the lay: it does for touching strands without a core"
+        "the outer diameter {outer_diameter} mm determines nothing here: it gives the lay or else the compaction of \
+        touching strands without a core"
     )]
-    LayUndetermined {
+    Undetermined {
         /// Outer diameter \[mm\].
         outer_diameter: f64,
     },
-    /// No lay angle from 0 to 60 deg lets the strands touch at this outer diameter.
-    #[error("no lay meets the outer diameter {outer_diameter} mm; straight strands have {least} mm")]
+    /// Strands on a core are flattened against each other, which they do not touch.
+    #[error("strands around a core cannot be flattened against each other")]
+    CompactionOnCore,
+    /// No lay angle from 0 to 60 deg, or no compaction, lets the strands touch at this outer diameter.
+    #[error("the outer diameter {outer_diameter} mm must lie between {least} and {greatest} mm")]
     OuterDiameter {
         /// Outer diameter \[mm\].
         outer_diameter: f64,
-        /// Outer diameter without lay, the least possible one \[mm\].
+        /// Least outer diameter, of straight or of fully compacted strands \[mm\].
         least: f64,
+        /// Largest outer diameter, of strands laid at 60 deg or of round ones \[mm\].
+        greatest: f64,
     },
     /// Strands laid on a core overlap each other.
     #[error("{strands} strands on the core (helix radius {helix_radius} mm) overlap: gap {gap} of their radius")]

@@ -1,15 +1,19 @@
 //! Ropes: equal strands laid about an axis, with or without a core, as one mesh.
 
 mod assembly;
+mod compaction;
 mod contour;
 mod fibres;
 mod layout;
 mod shape;
 
 pub use assembly::RopeMesh;
+pub use compaction::Compaction;
 pub use fibres::RopeFibres;
 pub use layout::{HelixRadius, LayBy, RopeLay, Sense, YarnLay, YarnLayBy};
 pub use shape::RopeShape;
+
+use shape::GREATEST_DEGREE;
 
 use crate::{
     Axis, CellKind, GeometryError, Handedness, Helix, Parameter, Section, Strand, StrandAxis, StrandEnds, StrandOrigin,
@@ -61,6 +65,8 @@ pub struct Rope {
     pub lay: RopeLay,
     /// Radius of their helices.
     pub helix_radius: HelixRadius,
+    /// Flattening of the outer strands against each other.
+    pub compaction: Compaction,
     /// Length along the axis of the rope \[mm\].
     pub length: f64,
     /// Where the axis starts.
@@ -90,6 +96,7 @@ impl Default for Rope {
             core: None,
             lay: RopeLay { by: LayBy::Angle(PI / 9.0), handedness: Handedness::Right },
             helix_radius: HelixRadius::default(),
+            compaction: Compaction::None,
             length: 60.0,
             origin: StrandOrigin::Middle,
             layers: 50,
@@ -102,8 +109,8 @@ impl Rope {
     /// Checks the parameters that need no computation.
     ///
     /// # Errors
-    /// The first parameter out of range; [`GeometryError::LayUndetermined`] when an outer diameter is to give the lay of
-    /// strands that do not touch each other.
+    /// The first parameter out of range; [`GeometryError::CompactionOnCore`]; [`GeometryError::Undetermined`] when an
+    /// outer diameter is to give the lay or the compaction of strands that do not touch each other, or both.
     pub fn validate(&self) -> Result<(), GeometryError> {
         check::count(Parameter::Strands, self.strands, 2)?;
         check::positive(Parameter::Length, self.length)?;
@@ -116,9 +123,24 @@ impl Rope {
             HelixRadius::Given(radius) => check::positive(Parameter::HelixRadius, radius)?,
             HelixRadius::Touching { gap } => check::range(Parameter::Gap, gap, (-1.0_f64).next_up(), f64::INFINITY)?,
         };
+        self.validate_compaction()
+    }
+
+    /// Checks that compaction makes sense and that an outer diameter determines one thing only.
+    fn validate_compaction(&self) -> Result<(), GeometryError> {
+        if self.compaction != Compaction::None && self.core.is_some() {
+            return Err(GeometryError::CompactionOnCore);
+        }
         let touching = matches!(self.helix_radius, HelixRadius::Touching { .. }) && self.core.is_none();
-        match self.lay.by {
-            LayBy::OuterDiameter(outer_diameter) if !touching => Err(GeometryError::LayUndetermined { outer_diameter }),
+        let undetermined = |outer_diameter: f64| Err(GeometryError::Undetermined { outer_diameter });
+        match (self.lay.by, self.compaction) {
+            (LayBy::OuterDiameter(diameter), compaction) if !touching || compaction != Compaction::None => {
+                undetermined(diameter)
+            }
+            (_, Compaction::OuterDiameter(diameter)) if !touching => undetermined(diameter),
+            (_, Compaction::Degree(degree)) => {
+                check::range(Parameter::Compaction, degree, 0.0, GREATEST_DEGREE.next_up()).map(|_| ())
+            }
             _ => Ok(()),
         }
     }

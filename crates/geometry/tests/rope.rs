@@ -164,8 +164,8 @@ fn surface_grids_are_oriented_and_complete() {
 /// Every strand is the first one turned by 2 pi k/n, nodes and fibre frames.
 #[test]
 fn strands_are_images_of_each_other() {
-    for strands in [2, 3, 5] {
-        let rope = Rope { strands, layers: 10, ..Rope::default() }.mesh().unwrap();
+    for (strands, compaction) in [(2, Compaction::None), (3, Compaction::Degree(1.3)), (5, Compaction::None)] {
+        let rope = Rope { strands, compaction, layers: 10, ..Rope::default() }.mesh().unwrap();
         let (per_strand, frames) = (rope.mesh.point_count() / strands, rope.frames().unwrap());
         let per_frame = frames.len() / strands;
         for k in 1..strands {
@@ -187,8 +187,11 @@ fn mirrored(x: &Vector3<f64>) -> Vector3<f64> {
 
 #[test]
 fn a_left_handed_rope_is_the_mirror_image() {
-    for kind in [CellKind::Hex8, CellKind::Hex27] {
-        let lay = |handedness| Rope { layers: 3, length: 5.0, kind, ..laid(LayBy::Length(50.0), handedness) };
+    for (kind, compaction) in [(CellKind::Hex8, Compaction::Degree(1.3)), (CellKind::Hex27, Compaction::None)] {
+        let lay = |handedness| {
+            let rope = laid(LayBy::Length(50.0), handedness);
+            Rope { layers: 3, length: 5.0, kind, compaction, ..rope }
+        };
         let [right, left] = [lay(Handedness::Right), lay(Handedness::Left)].map(|rope| rope.mesh().unwrap());
         let found = |x: Vector3<f64>| left.mesh.points.iter().position(|y| (y - x).amax() < 1e-12);
         let image: Vec<usize> = right.mesh.points.iter().map(|x| found(mirrored(x)).unwrap()).collect();
@@ -259,6 +262,71 @@ fn lay_by_length_angle_and_diameter() {
         let failure = laid(LayBy::OuterDiameter(diameter), Handedness::Right).mesh().unwrap_err();
         assert!(matches!(failure, GeometryError::OuterDiameter { .. }), "{failure}");
     }
+}
+
+/// Strands of 3.1 mm radius, 13.4 mm over all as circles, pressed into 12.6 mm.
+fn compacted(diameter: f64, kind: CellKind) -> Rope {
+    let outer = RopeStrand { radius: 3.1, ..RopeStrand::default() };
+    Rope { outer, kind, compaction: Compaction::OuterDiameter(diameter), layers: 40, ..Rope::default() }
+}
+
+#[test]
+fn compacted_strands_meet_the_diameter_and_touch() {
+    for kind in [CellKind::Hex8, CellKind::Hex27] {
+        let rope = compacted(12.6, kind);
+        let mesh = rope.mesh().unwrap();
+        assert!((mesh.shape.outer_diameter - 12.6).abs() < 1e-9 && mesh.shape.gap.abs() < 1e-9, "{:?}", mesh.shape);
+        assert!(mesh.shape.compaction > 1.0 && mesh.shape.compaction < 1.6);
+        check_strands(&mesh);
+        let levels = mesh.surfaces[0].levels as f64;
+        for i in 0..4 {
+            let v = 10.0 + (levels - 21.0) * f64::from(i) / 3.0;
+            let gap = gap_at(&mesh, [i as usize % 3, (i as usize + 1) % 3], v) / 3.1;
+            assert!(gap.abs() < 1e-3, "{kind:?}: gap {gap} R");
+        }
+        // The outermost nodes lie on the outer diameter but for the scaling of straight edges to the exact area.
+        let reach = mesh.mesh.points.iter().map(|x| x.xy().norm()).fold(0.0, f64::max);
+        assert!((2.0 * reach / 12.6 - 1.0).abs() < 0.02, "{reach}");
+    }
+}
+
+/// Degree 0 is round; the diameter falls with the degree; what cannot be is refused.
+#[test]
+fn degrees_of_compaction() {
+    let of = |degree: f64| Rope { compaction: Compaction::Degree(degree), ..Rope::default() };
+    assert_eq!(of(0.0).mesh().unwrap().mesh, Rope::default().mesh().unwrap().mesh);
+    let diameters: Vec<f64> = (0..=8).map(|i| of(0.25 * f64::from(i)).shape().unwrap().outer_diameter).collect();
+    assert!(diameters.is_sorted_by(|a, b| a >= b) && diameters[8] < 0.92 * diameters[0], "{diameters:?}");
+    let round = compacted(13.0, CellKind::Hex8);
+    for diameter in [11.0, 14.0, f64::NAN] {
+        let failure = Rope { compaction: Compaction::OuterDiameter(diameter), ..round }.shape().unwrap_err();
+        assert!(matches!(failure, GeometryError::OuterDiameter { .. }), "{failure}");
+    }
+    let diameter = RopeLay { by: LayBy::OuterDiameter(12.3), handedness: Handedness::Right };
+    for bad in [
+        Rope { compaction: Compaction::Degree(2.1), ..round },
+        Rope { compaction: Compaction::Degree(-0.1), ..round },
+        Rope { helix_radius: HelixRadius::Given(3.6), ..round },
+        Rope { core: Some(round.outer), ..round },
+        Rope { lay: diameter, ..round },
+    ] {
+        assert!(!bad.mesh().unwrap_err().to_string().is_empty());
+    }
+}
+
+/// The growth of a flattened section keeps its area: with inscribed sections, which nothing rescales, the volume
+/// converges to that of the strand.
+#[test]
+fn compaction_keeps_the_area() {
+    let error = [1, 2, 4].map(|factor| {
+        let section = Section { core_cells: 4 * factor, rings: 2, area: SectionArea::Inscribed, ..Section::default() };
+        let outer = RopeStrand { section, ..RopeStrand::default() };
+        let layers = 20 * factor;
+        let rope = Rope { outer, layers, length: 20.0, compaction: Compaction::Degree(1.3), ..Rope::default() };
+        let mesh = rope.mesh().unwrap();
+        volume(&mesh.mesh).unwrap() / (3.0 * mesh.strands[0].volume()) - 1.0
+    });
+    assert!(error[2].abs() < 3e-3 && error[0] / error[1] > 3.5 && error[1] / error[2] > 3.8, "{error:?}");
 }
 
 #[test]

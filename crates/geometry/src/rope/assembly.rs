@@ -2,7 +2,7 @@
 
 use super::{Rope, RopeFibres, RopeShape, sets};
 use crate::strand::sets as strand_sets;
-use crate::{Face, GeometryError, Mesh, Strand, SurfaceGrid, fibre_frames};
+use crate::{Face, GeometryError, Mesh, Strand, StrandAxis, SurfaceGrid, fibre_frames};
 use nalgebra::Matrix3;
 
 /// The mesh of a rope with what belongs to it, in its numbering.
@@ -43,7 +43,12 @@ impl Rope {
         let mut mesh = Mesh::new(self.kind, Vec::new(), Vec::new());
         let (mut surfaces, mut strand_of_cell) = (Vec::new(), Vec::new());
         for (i, strand) in strands.iter().enumerate() {
-            let part = strand.mesh()?;
+            let part = match (strand.axis, shape.compaction) {
+                (StrandAxis::Helix(_), degree) if degree > 0.0 => {
+                    strand.mesh_of(self.flattened(strand, shape.helix_radius, shape.lay, degree)?)?
+                }
+                _ => strand.mesh()?,
+            };
             surfaces.push(strand.surface_grid().shifted(mesh.point_count() as u32));
             strand_of_cell.extend(std::iter::repeat_n(i as u32, part.cell_count()));
             append(&mut mesh, part, i)?;

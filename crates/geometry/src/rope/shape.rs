@@ -1,8 +1,14 @@
 //! Helix radius and lay of a rope from the touching of its smooth surfaces.
 
+use super::compaction::{Flattened, flatten};
 use super::contour::{Contour, secant};
-use super::{HelixRadius, LayBy, Rope};
-use crate::{Axis, CellKind, GeometryError, Helix, Lay, StrandAxis, StrandOrigin, touching_radius_at_angle};
+use super::{Compaction, HelixRadius, LayBy, Rope, RopeLay, RopeStrand};
+use crate::{
+    Axis, CellKind, GeometryError, Helix, Lay, Mesh, SectionMesh, Strand, StrandAxis, StrandOrigin, touching_radius,
+    touching_radius_at_angle,
+};
+
+use std::f64::consts::PI;
 
 /// What follows from the parameters of a [`Rope`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,9 +19,11 @@ pub struct RopeShape {
     pub lay: Lay,
     /// Angle between their axes and that of the rope \[rad\].
     pub lay_angle: f64,
-    /// Outer diameter 2 (a + r) \[mm\], r the nominal radius of an outer strand.
+    /// Outer diameter 2 (a + lambda r) \[mm\], r the nominal radius of an outer strand, lambda = 1 where it is round.
     pub outer_diameter: f64,
-    /// Mean radius of the smooth contact surface of an outer strand in its section, see
+    /// Degree of compaction of the outer strands, 0 where they are round, see [`Compaction`].
+    pub compaction: f64,
+    /// Mean radius of the smooth contact surface of a round outer strand in its section, see
     /// [`crate::SectionMesh::smooth_radius`] \[mm\].
     pub smooth_radius: f64,
     /// The same of the core \[mm\].
@@ -27,55 +35,117 @@ pub struct RopeShape {
     pub core_gap: Option<f64>,
 }
 
+/// Largest degree of compaction.
+pub(super) const GREATEST_DEGREE: f64 = 2.0;
+
 impl Rope {
-    /// Helix radius, lay and gaps.
+    /// Helix radius, lay, compaction and gaps.
     ///
     /// # Errors
     /// As [`Rope::validate`]; [`GeometryError::StrandsDoNotFit`] when strands touch at no helix radius;
-    /// [`GeometryError::OuterDiameter`] when no lay meets the outer diameter; [`GeometryError::OuterStrandsOverlap`] when
-    /// strands that touch the core overlap each other; the errors of [`crate::Strand::mesh`].
+    /// [`GeometryError::OuterDiameter`] when no lay, or no compaction, meets the outer diameter;
+    /// [`GeometryError::OuterStrandsOverlap`] when strands that touch the core overlap each other; the errors of
+    /// [`crate::Strand::mesh`].
     pub fn shape(&self) -> Result<RopeShape, GeometryError> {
         self.validate()?;
-        let (a, lay) = match (self.helix_radius, self.lay.by) {
-            (HelixRadius::Given(a), _) => (a, self.lay_at(a)?),
-            (HelixRadius::Touching { gap }, LayBy::OuterDiameter(d)) => self.lay_of_diameter(d, gap)?,
-            (HelixRadius::Touching { gap }, _) => {
-                let a = self.touching(gap)?;
-                (a, self.lay_at(a)?)
-            }
+        let degree = match self.compaction {
+            Compaction::None => 0.0,
+            Compaction::Degree(degree) => degree,
+            Compaction::OuterDiameter(diameter) => self.degree_of_diameter(diameter)?,
         };
-        let shape = self.described(a, lay)?;
+        let shape = Search { rope: self, degree }.shape()?;
         let overlap = matches!(self.helix_radius, HelixRadius::Touching { .. }) && self.core.is_some();
         if overlap && shape.gap < -1e-9 {
-            return Err(GeometryError::OuterStrandsOverlap { strands: self.strands, helix_radius: a, gap: shape.gap });
+            let helix_radius = shape.helix_radius;
+            return Err(GeometryError::OuterStrandsOverlap { strands: self.strands, helix_radius, gap: shape.gap });
         }
         Ok(shape)
     }
 
-    fn described(&self, a: f64, lay: Lay) -> Result<RopeShape, GeometryError> {
+    /// The degree of compaction at which the rope has the given outer diameter: it falls as the degree grows.
+    fn degree_of_diameter(&self, outer_diameter: f64) -> Result<f64, GeometryError> {
+        let diameter = |degree: f64| Search { rope: self, degree }.outer_diameter();
+        let (least, greatest) = (diameter(GREATEST_DEGREE)?, diameter(0.0)?);
+        if !(least..=greatest * (1.0 + 1e-12)).contains(&outer_diameter) {
+            return Err(GeometryError::OuterDiameter { outer_diameter, least, greatest });
+        }
+        let (mut low, mut high) = (0.0, GREATEST_DEGREE);
+        for _ in 0..45 {
+            let middle = 0.5 * (low + high);
+            if diameter(middle)? > outer_diameter { low = middle } else { high = middle }
+        }
+        Ok(0.5 * (low + high))
+    }
+
+    /// The section of the outer strands on helices of radius `a`, flattened to the degree `degree`.
+    pub(super) fn flattened(
+        &self,
+        strand: &Strand,
+        a: f64,
+        lay: Lay,
+        degree: f64,
+    ) -> Result<SectionMesh, GeometryError> {
+        Ok(flatten(strand, &Helix::new(Axis::default(), a, lay, 0.0)?, self.strands, degree)?.section)
+    }
+}
+
+/// The search for the shape of a rope of known compaction.
+struct Search<'a> {
+    rope: &'a Rope,
+    degree: f64,
+}
+
+impl Search<'_> {
+    fn shape(&self) -> Result<RopeShape, GeometryError> {
+        let rope = self.rope;
+        let (a, lay) = self.helix()?;
         let core = self.core_smooth_radius()?;
         let core_gap = match core {
-            Some(radius) => Some((self.contour(a, lay, 1.0)?.inner_radius() - radius) / self.outer.radius),
+            Some(radius) => Some((self.contour(a, lay, 1.0)?.inner_radius() - radius) / rope.outer.radius),
             None => None,
         };
         Ok(RopeShape {
             helix_radius: a,
             lay,
             lay_angle: lay.angle(a),
-            outer_diameter: 2.0 * (a + self.outer.radius),
-            smooth_radius: self.outer.section.mesh(self.outer.radius, self.kind)?.smooth_radius(),
+            outer_diameter: self.diameter_at(a, lay)?,
+            compaction: self.degree,
+            smooth_radius: rope.outer.section.mesh(rope.outer.radius, rope.kind)?.smooth_radius(),
             core_smooth_radius: core,
             gap: self.gap(a, lay)?,
             core_gap,
         })
     }
 
+    fn outer_diameter(&self) -> Result<f64, GeometryError> {
+        let (a, lay) = self.helix()?;
+        self.diameter_at(a, lay)
+    }
+
+    fn diameter_at(&self, a: f64, lay: Lay) -> Result<f64, GeometryError> {
+        let (_, flattened) = self.layer(a, lay, 1.0)?;
+        Ok(2.0 * (a + flattened.growth * self.rope.outer.radius))
+    }
+
+    /// Helix radius and lay.
+    fn helix(&self) -> Result<(f64, Lay), GeometryError> {
+        match (self.rope.helix_radius, self.rope.lay.by) {
+            (HelixRadius::Given(a), _) => Ok((a, self.lay_at(a)?)),
+            (HelixRadius::Touching { gap }, LayBy::OuterDiameter(d)) => self.lay_of_diameter(d, gap),
+            (HelixRadius::Touching { gap }, _) => {
+                let a = self.touching(gap)?;
+                Ok((a, self.lay_at(a)?))
+            }
+        }
+    }
+
     /// The lay of strands on helices of radius `a`.
     fn lay_at(&self, a: f64) -> Result<Lay, GeometryError> {
-        match self.lay.by {
-            LayBy::Length(length) => Lay::from_lay_length(length, self.lay.handedness),
-            LayBy::Angle(angle) => Lay::from_angle(a, angle, self.lay.handedness),
-            LayBy::OuterDiameter(outer_diameter) => Err(GeometryError::LayUndetermined { outer_diameter }),
+        let RopeLay { by, handedness } = self.rope.lay;
+        match by {
+            LayBy::Length(length) => Lay::from_lay_length(length, handedness),
+            LayBy::Angle(angle) => Lay::from_angle(a, angle, handedness),
+            LayBy::OuterDiameter(outer_diameter) => Err(GeometryError::Undetermined { outer_diameter }),
         }
     }
 
@@ -85,7 +155,7 @@ impl Rope {
         let step = -1e-3 * start;
         let root = match self.core_smooth_radius()? {
             Some(core) => {
-                let least = core + gap * self.outer.radius;
+                let least = core + gap * self.rope.outer.radius;
                 secant(start, step, |a| Ok(least - self.contour(a, self.lay_at(a)?, 1.0)?.inner_radius()))?
             }
             None => secant(start, step, |a| self.excess(a, self.lay_at(a)?, 1.0 + 0.5 * gap))?,
@@ -95,24 +165,26 @@ impl Rope {
 
     /// The helix radius of round tubes.
     fn first_guess(&self, gap: f64) -> Result<f64, GeometryError> {
-        let radius = self.outer.radius;
-        if let Some(core) = &self.core {
+        let radius = self.rope.outer.radius;
+        if let Some(core) = &self.rope.core {
             return Ok(core.radius + radius * (1.0 + gap));
         }
-        match self.lay.by {
-            LayBy::Angle(angle) => touching_radius_at_angle(self.strands, radius * (1.0 + 0.5 * gap), angle),
-            _ => crate::touching_radius(self.strands, radius * (1.0 + 0.5 * gap), self.lay_at(radius)?),
+        match self.rope.lay.by {
+            LayBy::Angle(angle) => touching_radius_at_angle(self.rope.strands, radius * (1.0 + 0.5 * gap), angle),
+            _ => touching_radius(self.rope.strands, radius * (1.0 + 0.5 * gap), self.lay_at(radius)?),
         }
     }
 
     fn lay_of_diameter(&self, outer_diameter: f64, gap: f64) -> Result<(f64, Lay), GeometryError> {
-        let a = 0.5 * outer_diameter - self.outer.radius;
+        let a = 0.5 * outer_diameter - self.rope.outer.radius;
         let swelling = 1.0 + 0.5 * gap;
         let straight = |a: f64| self.excess(a, Lay::PARALLEL, swelling);
-        let failure = |least: f64| GeometryError::OuterDiameter { outer_diameter, least };
-        let start = touching_radius_at_angle(self.strands, self.outer.radius * swelling, 0.0)?;
+        let tubes = |angle| touching_radius_at_angle(self.rope.strands, self.rope.outer.radius * swelling, angle);
+        let greatest = 2.0 * (tubes(PI / 3.0)? + self.rope.outer.radius);
+        let failure = |least: f64| GeometryError::OuterDiameter { outer_diameter, least, greatest };
+        let start = tubes(0.0)?;
         let least_radius = secant(start, -1e-3 * start, straight)?.unwrap_or(start);
-        let least = 2.0 * (least_radius + self.outer.radius);
+        let least = 2.0 * (least_radius + self.rope.outer.radius);
         if outer_diameter.is_nan() || outer_diameter < least * (1.0 - 1e-12) {
             return Err(failure(least));
         }
@@ -120,7 +192,7 @@ impl Rope {
             return Ok((a, Lay::PARALLEL));
         }
         // The excess is close to linear in the square of the tangent of the lay angle.
-        let lay = |q: f64| Lay::from_rate(self.lay.handedness.sign() * q.max(0.0).sqrt() / a);
+        let lay = |q: f64| Lay::from_rate(self.rope.lay.handedness.sign() * q.max(0.0).sqrt() / a);
         let q = secant(0.0, 0.05, |q| self.excess(a, lay(q)?, swelling))?;
         let q = q.filter(|q| *q < 3.0).ok_or_else(|| failure(least))?;
         Ok((a, lay(q)?))
@@ -134,25 +206,33 @@ impl Rope {
 
     /// How far neighbours whose radius is `swelling` times theirs reach beyond the plane between them \[mm\].
     fn excess(&self, a: f64, lay: Lay, swelling: f64) -> Result<f64, GeometryError> {
-        Ok(self.contour(a, lay, swelling)?.excess(self.strands))
+        Ok(self.contour(a, lay, swelling)?.excess(self.rope.strands))
     }
 
     fn contour(&self, a: f64, lay: Lay, swelling: f64) -> Result<Contour, GeometryError> {
-        let (helix, height) = (Helix::new(Axis::default(), a, lay, 0.0)?, self.length / self.layers as f64);
-        let outer = super::RopeStrand { radius: self.outer.radius * swelling, ..self.outer };
-        let mut layer = self.strand(&outer, StrandAxis::Helix(helix), helix.arc_length(height))?;
-        (layer.layers, layer.origin) = (1, StrandOrigin::Bottom);
-        let order = if self.kind == CellKind::Hex27 { 2.0 } else { 1.0 };
-        Ok(Contour::new(&layer, &layer.mesh()?, height / order))
+        let (layer, flattened) = self.layer(a, lay, swelling)?;
+        let order = if layer.kind == CellKind::Hex27 { 2.0 } else { 1.0 };
+        let mesh: Mesh = layer.mesh_of(flattened.section)?;
+        Ok(Contour::new(&layer, &mesh, self.rope.length / (order * self.rope.layers as f64)))
+    }
+
+    /// One layer of an outer strand about the z axis, its radius `swelling` times the nominal one, and its section.
+    fn layer(&self, a: f64, lay: Lay, swelling: f64) -> Result<(Strand, Flattened), GeometryError> {
+        let (rope, helix) = (self.rope, Helix::new(Axis::default(), a, lay, 0.0)?);
+        let outer = RopeStrand { radius: rope.outer.radius * swelling, ..rope.outer };
+        let height = helix.arc_length(rope.length / rope.layers as f64);
+        let strand = rope.strand(&outer, StrandAxis::Helix(helix), height)?;
+        let layer = Strand { layers: 1, origin: StrandOrigin::Bottom, ..strand };
+        Ok((layer, flatten(&layer, &helix, rope.strands, self.degree)?))
     }
 
     fn core_smooth_radius(&self) -> Result<Option<f64>, GeometryError> {
-        let radius = |core: &super::RopeStrand| Ok(core.section.mesh(core.radius, self.kind)?.smooth_radius());
-        self.core.as_ref().map(radius).transpose()
+        let radius = |core: &RopeStrand| Ok(core.section.mesh(core.radius, self.rope.kind)?.smooth_radius());
+        self.rope.core.as_ref().map(radius).transpose()
     }
 
     fn do_not_fit(&self, lay: Result<Lay, GeometryError>) -> GeometryError {
         let lay_length = lay.map_or(f64::NAN, |lay| lay.lay_length());
-        GeometryError::StrandsDoNotFit { strands: self.strands, radius: self.outer.radius, lay_length }
+        GeometryError::StrandsDoNotFit { strands: self.rope.strands, radius: self.rope.outer.radius, lay_length }
     }
 }
