@@ -140,6 +140,12 @@ pub enum GeometryError {
         /// Outer diameter \[mm\].
         outer_diameter: f64,
     },
+    /// Strands to be joined are meshed with different kinds of cells.
+    #[error("strand {strand} is meshed with another kind of brick than strand 1")]
+    KindsDiffer {
+        /// One-based number of the strand.
+        strand: usize,
+    },
     /// Strands on a core are flattened against each other, which they do not touch.
     #[error("strands around a core cannot be flattened against each other")]
     CompactionOnCore,

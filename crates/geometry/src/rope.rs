@@ -5,9 +5,10 @@ mod compaction;
 mod contour;
 mod fibres;
 mod layout;
+mod search;
 mod shape;
 
-pub use assembly::RopeMesh;
+pub use assembly::{RopeMesh, join_strands};
 pub use compaction::Compaction;
 pub use fibres::RopeFibres;
 pub use layout::{HelixRadius, LayBy, RopeLay, Sense, YarnLay, YarnLayBy};
@@ -51,6 +52,17 @@ pub struct RopeStrand {
 /// The ends are plane and normal to the axis of the rope. Mesh lines keep their place in the Frenet frame of the axis of
 /// their strand. The axis of strand i lies at the angle 2 pi i/n from the reference direction of the axis of the rope
 /// where the rope starts counting (in its middle or at its bottom).
+///
+/// ```
+/// use subrope_geometry::{HelixRadius, Rope};
+/// let rope = Rope { helix_radius: HelixRadius::Touching { gap: 0.05 }, layers: 10, ..Rope::default() };
+/// let meshed = rope.mesh()?;
+/// assert_eq!(meshed.mesh.cell_count(), 3 * 48 * 10);
+/// assert!((meshed.shape.gap - 0.05).abs() < 1e-9);
+/// let frames = meshed.frames()?;
+/// assert_eq!(frames.len(), 8 * meshed.mesh.cell_count());
+/// # Ok::<(), subrope_geometry::GeometryError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rope {
     /// Axis of the rope.

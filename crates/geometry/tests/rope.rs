@@ -143,6 +143,26 @@ fn sets_cover_the_rope() {
     assert_eq!(rope.fibres.strand(mesh.cell_count()), 7);
 }
 
+/// Two strands of unequal size about one axis, with the sets of a rope.
+#[test]
+fn unequal_strands_are_joined() {
+    let lay = Lay::from_pitch(60.0).unwrap();
+    let strand = |radius: f64, helix_radius: f64, phase: f64| {
+        let helix = Helix::new(Axis::default(), helix_radius, lay, phase).unwrap();
+        let (axis, length) = (StrandAxis::Helix(helix), helix.arc_length(20.0));
+        Strand { radius, axis, length, layers: 8, ends: StrandEnds::Flat, ..Strand::default() }
+    };
+    let strands = [strand(2.0, 1.3, 0.0), strand(1.2, 2.1, 0.5 * TAU)];
+    let (mesh, surfaces) = rope::join_strands(&strands).unwrap();
+    mesh.validate().unwrap();
+    let volumes = strands.map(|strand| strand.volume());
+    assert!((volume(&mesh).unwrap() / (volumes[0] + volumes[1]) - 1.0).abs() < 1e-12);
+    assert_eq!(surfaces[1].nodes, mesh.node_sets["SURFACE_NODES_2"]);
+    assert!(fibre_frames(&mesh, &RopeFibres::new(&strands)).unwrap().iter().all(|f| frame_deviation(f) < 1e-12));
+    let mixed = [strands[0], Strand { kind: CellKind::Hex27, ..strands[1] }];
+    assert!(matches!(rope::join_strands(&mixed), Err(GeometryError::KindsDiffer { strand: 2 })));
+}
+
 /// Around times along points outwards, and the faces of the grid are the lateral surface.
 #[test]
 fn surface_grids_are_oriented_and_complete() {
@@ -225,6 +245,9 @@ fn the_wires_of_a_steel_strand_touch_the_core_only() {
     let thick = RopeStrand { radius: 2.0, ..rope.outer };
     let failure = Rope { outer: thick, core: Some(RopeStrand { radius: 1.9, ..thick }), ..rope }.mesh().unwrap_err();
     assert!(matches!(failure, GeometryError::OuterStrandsOverlap { gap, .. } if gap < 0.0), "{failure}");
+    // Strands far apart are laid all the same.
+    let apart = Rope { helix_radius: HelixRadius::Given(40.0), ..Rope::default() }.shape().unwrap();
+    assert!(apart.gap > 10.0, "{apart:?}");
     // With a given helix radius the overlap is told, not refused.
     let given = Rope { helix_radius: HelixRadius::Given(3.7), ..rope }.shape().unwrap();
     assert!(given.gap < 0.0 && given.core_gap.unwrap() < -0.05, "{given:?}");

@@ -2,7 +2,7 @@
 
 use super::{Rope, RopeFibres, RopeShape, sets};
 use crate::strand::sets as strand_sets;
-use crate::{Face, GeometryError, Mesh, Strand, StrandAxis, SurfaceGrid, fibre_frames};
+use crate::{CellKind, Face, GeometryError, Mesh, Strand, StrandAxis, SurfaceGrid, fibre_frames};
 use nalgebra::Matrix3;
 
 /// The mesh of a rope with what belongs to it, in its numbering.
@@ -40,26 +40,47 @@ impl Rope {
     pub fn mesh(&self) -> Result<RopeMesh, GeometryError> {
         let shape = self.shape()?;
         let strands = self.strands_of(&shape)?;
-        let mut mesh = Mesh::new(self.kind, Vec::new(), Vec::new());
-        let (mut surfaces, mut strand_of_cell) = (Vec::new(), Vec::new());
-        for (i, strand) in strands.iter().enumerate() {
-            let part = match (strand.axis, shape.compaction) {
-                (StrandAxis::Helix(_), degree) if degree > 0.0 => {
-                    strand.mesh_of(self.flattened(strand, shape.helix_radius, shape.lay, degree)?)?
-                }
-                _ => strand.mesh()?,
-            };
-            surfaces.push(strand.surface_grid().shifted(mesh.point_count() as u32));
-            strand_of_cell.extend(std::iter::repeat_n(i as u32, part.cell_count()));
-            append(&mut mesh, part, i)?;
-        }
-        mesh.point_labels = (1..=mesh.point_count() as u64).collect();
-        mesh.cell_labels = (1..=mesh.cell_count() as u64).collect();
-        mesh.node_sets.insert(sets::ALL.to_owned(), (0..mesh.point_count() as u32).collect());
-        mesh.element_sets.insert(sets::ALL.to_owned(), (0..mesh.cell_count() as u32).collect());
+        let (mesh, surfaces) = join(&strands, |strand| match strand.axis {
+            StrandAxis::Helix(_) if shape.compaction > 0.0 => {
+                strand.mesh_of(self.flattened(strand, shape.helix_radius, shape.lay, shape.compaction)?)
+            }
+            _ => strand.mesh(),
+        })?;
         let fibres = RopeFibres::new(&strands);
+        let strand_of_cell = (0..mesh.cell_count()).map(|cell| fibres.strand(cell) as u32).collect();
         Ok(RopeMesh { mesh, strand_of_cell, strands, surfaces, fibres, shape })
     }
+}
+
+/// One mesh of any strands, equal or not, with the sets of a rope, and their surface nodes; [`RopeFibres::new`] of the
+/// same strands is its fibre field.
+///
+/// # Errors
+/// As [`Strand::mesh`]; [`GeometryError::TooLarge`]; [`GeometryError::KindsDiffer`] when the strands are not all meshed
+/// with one kind of cell.
+pub fn join_strands(strands: &[Strand]) -> Result<(Mesh, Vec<SurfaceGrid>), GeometryError> {
+    join(strands, Strand::mesh)
+}
+
+fn join(
+    strands: &[Strand],
+    part: impl Fn(&Strand) -> Result<Mesh, GeometryError>,
+) -> Result<(Mesh, Vec<SurfaceGrid>), GeometryError> {
+    let kind = strands.first().map_or(CellKind::Hex8, |strand| strand.kind);
+    let mut mesh = Mesh::new(kind, Vec::new(), Vec::new());
+    let mut surfaces = Vec::with_capacity(strands.len());
+    for (i, strand) in strands.iter().enumerate() {
+        if strand.kind != kind {
+            return Err(GeometryError::KindsDiffer { strand: i + 1 });
+        }
+        surfaces.push(strand.surface_grid().shifted(mesh.point_count() as u32));
+        append(&mut mesh, part(strand)?, i)?;
+    }
+    mesh.point_labels = (1..=mesh.point_count() as u64).collect();
+    mesh.cell_labels = (1..=mesh.cell_count() as u64).collect();
+    mesh.node_sets.insert(sets::ALL.to_owned(), (0..mesh.point_count() as u32).collect());
+    mesh.element_sets.insert(sets::ALL.to_owned(), (0..mesh.cell_count() as u32).collect());
+    Ok((mesh, surfaces))
 }
 
 /// Adds the mesh of the strand of index `strand` with its sets; its ends also join the ends of the rope.
