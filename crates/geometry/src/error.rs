@@ -39,6 +39,10 @@ pub enum Parameter {
     Layers,
     /// Number of strands in a rope.
     Strands,
+    /// Degree of compaction of strands \[-\].
+    Compaction,
+    /// Distance between neighbouring strands over their radius \[-\].
+    Gap,
 }
 
 impl fmt::Display for Parameter {
@@ -61,6 +65,8 @@ impl fmt::Display for Parameter {
             Self::Rings => "number of rings",
             Self::Layers => "number of layers",
             Self::Strands => "number of strands",
+            Self::Compaction => "degree of compaction",
+            Self::Gap => "gap over the radius",
         })
     }
 }
@@ -124,6 +130,44 @@ pub enum GeometryError {
         radius: f64,
         /// Lay length \[mm\].
         lay_length: f64,
+    },
+    /// An outer diameter determines the lay or the compaction of touching strands without a core, and one of them only.
+    #[error(
+        "the outer diameter {outer_diameter} mm determines nothing here: it gives the lay or else the compaction of \
+        touching strands without a core"
+    )]
+    Undetermined {
+        /// Outer diameter \[mm\].
+        outer_diameter: f64,
+    },
+    /// Strands to be joined are meshed with different kinds of cells.
+    #[error("strand {strand} is meshed with another kind of brick than strand 1")]
+    KindsDiffer {
+        /// One-based number of the strand.
+        strand: usize,
+    },
+    /// Strands on a core are flattened against each other, which they do not touch.
+    #[error("strands around a core cannot be flattened against each other")]
+    CompactionOnCore,
+    /// No lay angle from 0 to 60 deg, or no compaction, lets the strands touch at this outer diameter.
+    #[error("the outer diameter {outer_diameter} mm must lie between {least} and {greatest} mm")]
+    OuterDiameter {
+        /// Outer diameter \[mm\].
+        outer_diameter: f64,
+        /// Least outer diameter, of straight or of fully compacted strands \[mm\].
+        least: f64,
+        /// Largest outer diameter, of strands laid at 60 deg or of round ones \[mm\].
+        greatest: f64,
+    },
+    /// Strands laid on a core overlap each other.
+    #[error("{strands} strands on the core (helix radius {helix_radius} mm) overlap: gap {gap} of their radius")]
+    OuterStrandsOverlap {
+        /// Number of outer strands.
+        strands: usize,
+        /// Radius of their helices \[mm\].
+        helix_radius: f64,
+        /// Gap between neighbours over their radius, negative.
+        gap: f64,
     },
     /// A strand on a helical axis is thicker than the radius of curvature of that axis: its sections overlap.
     #[error("strand radius {radius} mm reaches the radius of curvature {curvature_radius} mm of its axis")]

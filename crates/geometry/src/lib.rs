@@ -5,6 +5,9 @@
 //! - [`helix`]: lay, helices, Frenet frames, yarns in strands with a helical axis;
 //! - [`fibre`]: fields of fibre frames;
 //! - [`section`], [`strand`]: meshes of sections and strands;
+//! - [`rope`]: ropes of several strands, their helix radius, lay and mesh;
+//! - [`surface_grid`], [`spline`]: surface nodes of a strand and the smooth surface through their net;
+//! - [`sizing`]: from filaments to the rope, what follows and what contradicts;
 //! - [`quality`]: Jacobian, shape, volume and fibre angles of a mesh.
 //!
 //! Lengths are in mm, angles in radians, everything is in the reference configuration.
@@ -18,8 +21,12 @@ pub mod hexahedron;
 pub mod mesh;
 pub mod quadrilateral;
 pub mod quality;
+pub mod rope;
 pub mod section;
+pub mod sizing;
+pub mod spline;
 pub mod strand;
+pub mod surface_grid;
 
 pub use axis::{Axis, Cylindrical};
 pub use error::{GeometryError, Parameter};
@@ -31,5 +38,11 @@ pub use helix::{FrenetFrame, Handedness, Helix, Lay, Yarn, touching_radius, touc
 pub use hexahedron::{Hex8, Hex27, Hexahedron, MappedPoint, QuadraturePoint, map_point};
 pub use mesh::{CellKind, Face, Mesh, exterior_faces};
 pub use quadrilateral::{FacePoint, Quad4, Quad9, Quadrilateral, surface_area};
+pub use rope::{
+    Compaction, HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeStrand, Sense, YarnLay,
+    YarnLayBy,
+};
 pub use section::{Section, SectionArea, SectionMesh};
+pub use sizing::{Hierarchy, Quantity, SizingReport};
 pub use strand::{MeshLines, Strand, StrandAxis, StrandEnds, StrandFibres, StrandOrigin};
+pub use surface_grid::SurfaceGrid;

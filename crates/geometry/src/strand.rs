@@ -136,8 +136,12 @@ impl Strand {
     /// # Errors
     /// As [`Strand::validate`]; [`GeometryError::SectionFolds`], [`GeometryError::InvertedCells`] when cells fold.
     pub fn mesh(&self) -> Result<Mesh, GeometryError> {
+        self.mesh_of(self.section.mesh(self.radius, self.kind)?)
+    }
+
+    /// As [`Strand::mesh`], with the nodes of the section moved to those of `section`.
+    pub(crate) fn mesh_of(&self, mut section: crate::SectionMesh) -> Result<Mesh, GeometryError> {
         self.validate()?;
-        let mut section = self.section.mesh(self.radius, self.kind)?;
         self.axis.check_radius(section.outer_radius(), self.line_rate(), self.ends)?;
         let mut mesh = sweep::sweep(self, &section);
         let prismatic = matches!(self.axis, StrandAxis::Straight(_)) && self.line_rate() == 0.0;

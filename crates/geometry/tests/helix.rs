@@ -207,3 +207,29 @@ fn touching_helices_are_two_radii_apart() {
     assert!(matches!(short, Err(GeometryError::StrandsDoNotFit { strands: 3, .. })));
     assert!(touching_radius(1, 2.0, Lay::PARALLEL).is_err());
 }
+
+/// The least distance of neighbouring helices, 2 pi/n apart, by brute force: samples, then ever closer ones.
+fn sampled_distance(radius: f64, angle: f64, strands: usize) -> f64 {
+    let k = angle.tan() / radius;
+    let [delta, pitch] = [TAU / strands as f64, k.recip()];
+    let squared = |u: f64| 2.0 * radius * radius * (1.0 - u.cos()) + ((u - delta) * pitch).powi(2);
+    let (mut centre, mut width) = (delta, TAU);
+    for _ in 0..40 {
+        let samples = (-200..=200).map(|i| centre + width * f64::from(i) / 200.0);
+        centre = samples.min_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap();
+        width *= 0.5;
+    }
+    squared(centre).sqrt()
+}
+
+#[test]
+fn touching_radius_against_brute_force() {
+    for degrees in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0] {
+        for strands in [2, 3, 4, 6] {
+            let angle = f64::to_radians(degrees);
+            let a = touching_radius_at_angle(strands, 1.0, angle).unwrap();
+            let distance = sampled_distance(a, angle, strands);
+            assert!((distance - 2.0).abs() < 1e-12, "{strands} at {degrees} deg: {distance}");
+        }
+    }
+}

@@ -33,7 +33,7 @@ impl Default for StrandAxis {
 impl StrandAxis {
     /// Position of the point (u, v) \[mm\] of the section at arc length `s` \[mm\] on mesh lines that turn by `rate`
     /// \[rad/mm\].
-    pub(super) fn place(&self, s: f64, local: &Vector2<f64>, rate: f64, ends: StrandEnds) -> Vector3<f64> {
+    pub(crate) fn place(&self, s: f64, local: &Vector2<f64>, rate: f64, ends: StrandEnds) -> Vector3<f64> {
         match (self, ends) {
             (Self::Straight(axis), _) => {
                 let turned = turn(local, rate * s);
