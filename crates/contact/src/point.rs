@@ -20,6 +20,8 @@ pub struct History {
     pub traction: Vector3<f64>,
     /// Elastic slip, contravariant.
     pub elastic: Vector2<f64>,
+    /// Length of the elastic slip \[mm\]: kept when the surface is stretched, so that a traction at its limit stays there.
+    pub elastic_length: f64,
     /// Length slipped so far \[mm\].
     pub slip: f64,
     /// Friction work so far \[mJ/mm^2\], end values.
@@ -127,6 +129,7 @@ impl Point {
             energies.potential += f.stored;
             energies.friction = options.friction * mean * f.slipped;
             self.new.elastic = f.elastic;
+            self.new.elastic_length = f.magnitude / options.tangential_penalty;
             self.new.slip += f.slipped;
             self.new.work += f.magnitude * f.slipped;
             self.new.traction = -spatial(&foot.local, &f.traction);
@@ -149,7 +152,8 @@ impl Point {
             let before = committed.surface.shape(place.patch as usize, place.xi);
             let before = Local::new(before, &committed.gather(place.patch as usize));
             slip.way = local.position - before.position;
-            slip.elastic = before.tangents[0] * self.old.elastic[0] + before.tangents[1] * self.old.elastic[1];
+            let elastic = before.tangents[0] * self.old.elastic[0] + before.tangents[1] * self.old.elastic[1];
+            slip.elastic = elastic.try_normalize(0.0).unwrap_or_default() * self.old.elastic_length;
             slip.share = share(self.old.gap, self.old.pressure, self.new.gap);
         }
         law::friction(&slip, options.tangential_penalty, options.friction, pressure)

@@ -175,7 +175,7 @@ fn a_rigid_motion_of_both_bodies_slips_nothing_and_turns_the_forces() {
     }
     let turned = evaluate(&mut contact, &moved, &u, &u).expect("forces").0;
     contact.commit();
-    assert!((contact.report().work - before).abs() < 1e-12 * before, "{} {before}", contact.report().work);
+    assert!((contact.report().work - before).abs() < 1e-10 * before, "{} {before}", contact.report().work);
     for n in 0..mesh.points.len() {
         let f = turn * nalgebra::Vector3::from_column_slice(&force[3 * n..3 * n + 3]);
         let g = nalgebra::Vector3::from_column_slice(&turned[3 * n..3 * n + 3]);
