@@ -8,6 +8,7 @@
 
 mod boundary;
 mod check;
+mod contact;
 mod deck;
 mod element;
 mod error;
@@ -17,6 +18,7 @@ mod law;
 mod output;
 mod prescription;
 mod program;
+mod rope;
 mod sets;
 mod solver;
 mod step;
@@ -28,6 +30,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) use check::check_law;
 
 pub use boundary::{Constraint, ConstraintComponents, End, EndKind};
+pub use contact::{Contact, ContactMethod, ContactSmoothing, ContactTangent, Rigid, RigidShape};
 pub use deck::{Deck, Fibres, HelixFibres};
 pub use element::{Element, Formulation};
 pub use error::SceneError;
@@ -40,6 +43,7 @@ pub use law::{
 pub use output::{Field, Output, Precision};
 pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
+pub use rope::{Core, Rope, YarnSense, Yarns};
 pub use solver::{LineSearch, Solver, Stabilisation};
 pub use step::{
     Bend, BendAxis, BendEnds, Distribution, Incrementation, Increments, NodalForce, PointForce, Prescribe, Step,
@@ -53,7 +57,8 @@ pub const STRAND_SETS: [&str; 6] = ["END_A", "END_B", "LATERAL", "SURFACE_NODES"
 /// The surfaces of a generated strand.
 pub const STRAND_SURFACES: [&str; 1] = ["LATERAL"];
 
-/// A scene: mesh, law, boundary, steps, solver and output. Exactly one of `strand` and `deck` is given.
+/// A scene: mesh, law, boundary, steps, solver and output. Exactly one of `strand`, `rope` and `deck` is
+/// given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -70,6 +75,9 @@ pub struct Scene {
     /// A strand generated from a few numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strand: Option<Strand>,
+    /// A rope of several strands generated from a few numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rope: Option<Rope>,
     /// A mesh read from an Abaqus deck.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deck: Option<Deck>,
@@ -81,6 +89,12 @@ pub struct Scene {
     /// Reference points that carry node sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub end: Vec<End>,
+    /// Surfaces that touch.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contact: Vec<Contact>,
+    /// Rigid bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<Rigid>,
     /// Prescribed displacements of node sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub constraint: Vec<Constraint>,
@@ -104,6 +118,17 @@ impl Scene {
     #[must_use]
     pub fn schema() -> serde_json::Value {
         crate::document::schema_of::<Self>()
+    }
+
+    /// Length of the generated strand or rope \[mm\].
+    #[must_use]
+    pub fn length(&self) -> Option<f64> {
+        self.strand.as_ref().map(|s| s.length).or(self.rope.as_ref().map(|r| r.length))
+    }
+
+    /// Names of all reference points: ends, then rigid bodies.
+    pub fn point_names(&self) -> impl Iterator<Item = &str> {
+        self.end.iter().map(|e| e.name.as_str()).chain(self.rigid.iter().map(|r| r.name.as_str()))
     }
 
     /// Reads and checks scene text; `name` is what errors call it. A deck is not opened, so the names of its sets are

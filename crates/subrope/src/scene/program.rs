@@ -167,7 +167,7 @@ impl Program {
     /// Resolves all steps of a checked scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let length = scene.strand.as_ref().map(|s| s.length);
+        let length = scene.length();
         let mut standing = initial_standing(scene);
         let mut loads = BTreeMap::new();
         let mut steps: Vec<ProgramStep> = Vec::with_capacity(scene.step.len());
@@ -200,7 +200,7 @@ type Motions = BTreeMap<Key, MotionPath>;
 fn initial_standing(scene: &Scene) -> BTreeMap<Key, Standing> {
     let held = || Standing { free: false, value: Some(0.0), arc: Some(0.0) };
     let points =
-        scene.end.iter().flat_map(|end| Component::ALL.into_iter().map(|c| (MotionTarget::Point(end.name.clone()), c)));
+        scene.point_names().flat_map(|name| Component::ALL.into_iter().map(|c| (MotionTarget::Point(name.to_owned()), c)));
     let constraints = scene.constraint.iter().flat_map(|constraint| {
         let listed = Component::ALL.into_iter().zip(constraint.components.values()).filter(|(_, v)| v.is_some());
         listed.map(|(c, _)| (MotionTarget::Constraint(constraint.name.clone()), c))

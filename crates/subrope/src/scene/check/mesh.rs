@@ -7,16 +7,21 @@ use crate::scene::{Deck, Fibres, Formulation, HelixFibres, Strand};
 impl Checker<'_> {
     pub(super) fn mesh(&mut self) {
         let scene = self.scene;
-        match (&scene.strand, &scene.deck) {
-            (Some(_), Some(_)) => {
-                let help = "keep [strand] for a generated mesh or [deck] for one from a file";
-                self.inconsistent(&top("deck"), "a scene has either [strand] or [deck], not both", help);
-            }
-            (None, None) => {
-                let help = "add [strand] (a generated mesh) or [deck] (a mesh from an Abaqus file)";
+        let meshes = [("strand", scene.strand.is_some()), ("rope", scene.rope.is_some()), ("deck", scene.deck.is_some())];
+        let given: Vec<&str> = meshes.iter().filter(|(_, given)| *given).map(|(key, _)| *key).collect();
+        match given[..] {
+            [] => {
+                let help = "add [strand] or [rope] (a generated mesh), or [deck] (a mesh from an Abaqus file)";
                 self.inconsistent(&Location::root(), "the scene has no mesh", help);
             }
+            [first, second, ..] => {
+                let cause = format!("a scene has either [{first}] or [{second}], not both");
+                self.inconsistent(&top(second), cause, "keep one of [strand], [rope] and [deck]");
+            }
             _ => {}
+        }
+        if let Some(rope) = &scene.rope {
+            self.rope(rope);
         }
         if let Some(strand) = &scene.strand {
             self.strand(strand);

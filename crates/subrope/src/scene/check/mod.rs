@@ -1,6 +1,7 @@
 //! Checks of a scene that need more than one value.
 
 mod boundary;
+mod contact;
 mod law;
 mod mesh;
 mod motion;
@@ -18,6 +19,7 @@ pub(super) fn check(scene: &Scene, document: &Document, names: Option<&DeckNames
     checker.mesh();
     checker.law();
     checker.boundary();
+    checker.contacts();
     checker.steps();
     checker.problems
 }
@@ -85,8 +87,11 @@ impl Checker<'_> {
 
     /// A surface; names of a deck do not distinguish case.
     fn surface(&mut self, at: &Location, name: &str) {
-        let allowed: Vec<String> = match (&self.scene.strand, self.names.filter(|n| !n.includes)) {
-            (Some(_), _) => STRAND_SURFACES.map(str::to_owned).to_vec(),
+        let scene = self.scene;
+        let generated = scene.strand.as_ref().map(|_| STRAND_SURFACES.map(str::to_owned).to_vec());
+        let generated = generated.or(scene.rope.as_ref().map(super::Rope::surface_names));
+        let allowed: Vec<String> = match (generated, self.names.filter(|n| !n.includes)) {
+            (Some(names), _) => names,
             (None, Some(names)) => names.surfaces.iter().cloned().chain(self.aliases()).collect(),
             (None, None) => return,
         };
@@ -105,6 +110,9 @@ impl Checker<'_> {
     fn set_names(&self) -> Option<Vec<String>> {
         if self.scene.strand.is_some() {
             return Some(STRAND_SETS.map(str::to_owned).to_vec());
+        }
+        if let Some(rope) = &self.scene.rope {
+            return Some(rope.set_names());
         }
         let names = self.names.filter(|n| !n.includes)?;
         Some(names.sets.iter().cloned().chain(self.aliases()).chain(["ALL".to_owned()]).collect())

@@ -40,8 +40,8 @@ impl Checker<'_> {
 
     /// The name of a reference point.
     pub(super) fn point(&mut self, at: &Location, name: &str) -> bool {
-        let allowed: Vec<String> = self.scene.end.iter().map(|e| e.name.clone()).collect();
-        let help = "reference points are the [[end]] tables of the scene";
+        let allowed: Vec<String> = self.scene.point_names().map(str::to_owned).collect();
+        let help = "reference points are the [[end]] and [[rigid]] tables of the scene";
         self.known(at, "reference point", name, &allowed, help)
     }
 
@@ -56,7 +56,7 @@ impl Checker<'_> {
         if bend.first == bend.second {
             self.inconsistent(&at.at("second"), "an end cannot be bent against itself", "name two reference points");
         }
-        if bend.ends == BendEnds::Circle && bend.length.is_none() && self.scene.strand.is_none() {
+        if bend.ends == BendEnds::Circle && bend.length.is_none() && self.scene.length().is_none() {
             self.missing(at, "length", "length of the ideal arc (mm); only a generated strand has one of its own");
         }
         let axis = if bend.axis == BendAxis::X { Component::Rx } else { Component::Ry };
@@ -107,7 +107,7 @@ impl Checker<'_> {
         for [_, value] in elongation.knots().into_iter().filter(|[_, v]| *v <= -1.0) {
             self.out_of_range(&own, "elongation", value, "greater than -1 (a fraction of the length)");
         }
-        if length.is_none() && self.scene.strand.is_none() {
+        if length.is_none() && self.scene.length().is_none() {
             self.missing(
                 at,
                 "length",
