@@ -49,9 +49,9 @@ pub struct RopeStrand {
 
 /// A rope: `strands` equal strands on helices about an axis, and a straight core where one is given.
 ///
-/// The ends are plane and normal to the axis of the rope. Mesh lines keep their place in the Frenet frame of the axis of
-/// their strand. The axis of strand i lies at the angle 2 pi i/n from the reference direction of the axis of the rope
-/// where the rope starts counting (in its middle or at its bottom).
+/// The ends are plane and normal to the axis of the rope. Mesh lines keep their place in the Frenet frame of the axis
+/// of their strand. The axis of strand i lies at the angle 2 pi i/n from the reference direction of the axis of the
+/// rope where the rope starts counting (in its middle or at its bottom).
 ///
 /// ```
 /// use subrope_geometry::{HelixRadius, Rope};

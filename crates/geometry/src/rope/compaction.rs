@@ -12,8 +12,8 @@ use std::f64::consts::{PI, TAU};
 ///
 /// T is the radius of the section of the round strand in the direction of x, m the normal of the plane between the
 /// neighbours, c the degree of compaction. The set is convex and smooth: round for c = 0, cut by planes at the distance
-/// lambda r/c from the axis of the strand when c is large, with rounded edges. lambda keeps the area, so that the strand
-/// keeps its volume per length.
+/// lambda r/c from the axis of the strand when c is large, with rounded edges. lambda keeps the area, so that the
+/// strand keeps its volume per length. Fibre fields of compacted strands are those of the round ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Compaction {
     /// Round strands.

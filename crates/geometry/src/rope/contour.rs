@@ -13,8 +13,8 @@ use nalgebra::Vector2;
 pub(super) struct Contour(Vec<Vector2<f64>>);
 
 impl Contour {
-    /// The contour of a strand with flat ends about the z axis of phase 0, of which one layer is meshed; `spacing` is the
-    /// distance of its rings along the rope axis \[mm\].
+    /// The contour of a strand with flat ends about the z axis of phase 0, of which one layer is meshed; `spacing` is
+    /// the distance of its rings along the rope axis \[mm\].
     pub(super) fn new(layer: &Strand, mesh: &crate::Mesh, spacing: f64) -> Self {
         let rate = match layer.axis {
             StrandAxis::Straight(_) => 0.0,
@@ -25,8 +25,8 @@ impl Contour {
         Self(grid.ring(0).iter().map(|&node| mesh.points[node as usize].xy() * factor).collect())
     }
 
-    /// How far \[mm\] the contour reaches beyond the line between neighbours of `strands` strands, which leaves the rope
-    /// axis at the angle pi/`strands`.
+    /// How far \[mm\] the contour reaches beyond the line between neighbours of `strands` strands, which leaves the
+    /// rope axis at the angle pi/`strands`.
     pub(super) fn excess(&self, strands: usize) -> f64 {
         let (sin, cos) = (std::f64::consts::PI / strands as f64).sin_cos();
         greatest(&self.0, |x| x.y * cos - x.x * sin)

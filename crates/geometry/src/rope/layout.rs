@@ -63,8 +63,8 @@ pub enum YarnLayBy {
     Parallel,
 }
 
-/// Winding of the yarns of a strand: the yarn at the radius r has the angle phi_0 + 2 pi s/p_s against the Frenet normal
-/// of the axis of the strand, s the arc length of that axis.
+/// Winding of the yarns of a strand: the yarn at the radius r has the angle phi_0 + 2 pi s/p_s against the Frenet
+/// normal of the axis of the strand, s the arc length of that axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct YarnLay {
     /// What gives it.
