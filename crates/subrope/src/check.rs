@@ -89,7 +89,7 @@ fn report(model: RopeModel) -> Result<CheckReport, ModelError> {
         nodes: mesh.point_count(),
         points,
         quality: mesh_quality(mesh)?,
-        exact_volume: model.mesh.strand.as_ref().map(subrope_geometry::Strand::volume),
+        exact_volume: model.mesh.exact_volume(),
         angles: (points > 0).then(|| fibre_angles(mesh, &model.mesh.frames, &Vector3::z())).transpose()?,
         system,
         state_bytes_per_point,

@@ -1,5 +1,6 @@
 //! Why a scene makes no model.
 
+use subrope_contact::ContactError;
 use subrope_fem::FemError;
 use subrope_geometry::GeometryError;
 use subrope_io::IoError;
@@ -21,6 +22,9 @@ pub enum ModelError {
     /// The kernel refuses the model.
     #[error("{0}")]
     Fem(Box<FemError>),
+    /// Surfaces that cannot be in contact.
+    #[error("contact: {0}")]
+    Contact(#[from] ContactError),
     /// A set that does not exist.
     #[error("there is no {kind} \"{name}\"; there are: {}", available.join(", "))]
     UnknownSet {

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use subrope_geometry::{
-    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames, Section,
-    SectionArea, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
+    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames, RopeMesh,
+    RopeShape, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
 };
 use subrope_io::{Ignored, read_deck};
 
@@ -19,6 +19,19 @@ pub struct MeshModel {
     pub frames: Vec<Matrix3<f64>>,
     /// The generated strand, if it is one.
     pub strand: Option<Strand>,
+    /// The generated rope, if it is one: the strand of every cell, and what its shape came to.
+    pub rope: Option<RopeModelShape>,
+}
+
+/// What a generated rope adds to its mesh.
+#[derive(Debug)]
+pub struct RopeModelShape {
+    /// Zero-based strand of every cell.
+    pub strand_of_cell: Vec<u32>,
+    /// Strands, the core last.
+    pub strands: Vec<Strand>,
+    /// Helix radius, lay angle, diameter, gaps.
+    pub shape: RopeShape,
 }
 
 impl MeshModel {
@@ -28,9 +41,10 @@ impl MeshModel {
     /// [`ModelError::Geometry`], [`ModelError::Deck`], [`ModelError::MissingFibres`], [`ModelError::WrongElement`].
     pub fn new(scene: &Scene, deck: Option<&std::path::Path>) -> Result<(Self, Vec<Ignored>), ModelError> {
         let kind = cell_kind(scene.element.formulation);
-        let (model, ignored) = match (&scene.strand, &scene.deck, deck) {
-            (Some(strand), _, _) => (Self::generate(strand, kind)?, Vec::new()),
-            (None, Some(entry), Some(path)) => Self::read(entry, path)?,
+        let (model, ignored) = match (&scene.strand, &scene.rope, &scene.deck, deck) {
+            (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
+            (None, Some(rope), ..) => (Self::generate_rope(rope, kind)?, Vec::new()),
+            (None, None, Some(entry), Some(path)) => Self::read(entry, path)?,
             _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
         };
         let found = model.mesh.kind.nodes();
@@ -46,7 +60,21 @@ impl MeshModel {
         let mut mesh = strand.mesh()?;
         add_sets(&mut mesh);
         let frames = fibre_frames(&mesh, &strand.fibres())?;
-        Ok(Self { mesh, frames, strand: Some(strand) })
+        Ok(Self { mesh, frames, strand: Some(strand), rope: None })
+    }
+
+    fn generate_rope(entry: &scene::Rope, kind: CellKind) -> Result<Self, ModelError> {
+        let meshed = super::rope::rope_mesh(entry, kind)?;
+        let frames = meshed.frames()?;
+        let RopeMesh { mesh, strand_of_cell, strands, shape, .. } = meshed;
+        Ok(Self { mesh, frames, strand: None, rope: Some(RopeModelShape { strand_of_cell, strands, shape }) })
+    }
+
+    /// Volume of the smooth strands \[mm^3\], for a generated mesh.
+    #[must_use]
+    pub fn exact_volume(&self) -> Option<f64> {
+        let rope = self.rope.as_ref().map(|r| r.strands.iter().map(Strand::volume).sum());
+        self.strand.as_ref().map(Strand::volume).or(rope)
     }
 
     fn read(entry: &Deck, path: &std::path::Path) -> Result<(Self, Vec<Ignored>), ModelError> {
@@ -61,7 +89,7 @@ impl MeshModel {
         };
         rename_sets(&mut mesh, entry)?;
         add_all(&mut mesh);
-        Ok((Self { mesh, frames, strand: None }, deck.ignored))
+        Ok((Self { mesh, frames, strand: None, rope: None }, deck.ignored))
     }
 
     /// A node set by name.
@@ -144,16 +172,7 @@ fn strand_of(entry: &scene::Strand, kind: CellKind) -> Result<Strand, ModelError
         length: entry.length,
         layers: entry.mesh.layers,
         kind,
-        section: Section {
-            core_cells: entry.mesh.core,
-            rings: entry.mesh.rings,
-            core_fraction: entry.mesh.core_fraction,
-            core_bulge: entry.mesh.core_bulge,
-            area: match entry.mesh.area {
-                scene::SectionArea::Exact => SectionArea::Exact,
-                scene::SectionArea::Inscribed => SectionArea::Inscribed,
-            },
-        },
+        section: super::rope::section(&entry.mesh),
         lay: Lay::from_rate(entry.surface_tangent() / entry.radius)?,
         origin: match entry.origin {
             scene::Origin::Middle => StrandOrigin::Middle,

@@ -1,13 +1,16 @@
 //! From a scene to a finite element model: mesh, fibre frames, law, ends, steps.
 
+mod contact;
 mod error;
 mod law;
 mod loads;
 mod mesh;
+mod rope;
 mod steps;
 
+pub use contact::ContactCells;
 pub use error::ModelError;
-pub use mesh::MeshModel;
+pub use mesh::{MeshModel, RopeModelShape};
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
@@ -29,6 +32,8 @@ pub struct RopeModel {
     pub steps: Vec<Step>,
     /// Keywords of a deck that were not read.
     pub ignored: Vec<Ignored>,
+    /// Faces of every contact, in the order of the contributions.
+    pub contact_cells: Vec<ContactCells>,
 }
 
 impl RopeModel {
@@ -51,15 +56,25 @@ impl RopeModel {
     ) -> Result<Self, ModelError> {
         let (mesh, ignored) = MeshModel::new(scene, deck)?;
         let solid = law::solid(&mesh, &scene.law, scene.element.formulation)?;
-        let kinematics = kinematics(scene, &mesh)?;
+        let mut positions = mesh.mesh.points.clone();
+        let mut sections = scene.end.iter().map(|end| section(end, &mesh)).collect::<Result<Vec<_>, _>>()?;
+        let bodies = contact::rigid_bodies(scene, &mesh, &mut positions, &mut sections)?;
+        let contacts = contact::contacts(scene, &mesh, &bodies, &positions)?;
+        let kinematics = Kinematics::new(positions, sections)?;
         let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
+        let mut contact_cells = Vec::with_capacity(contacts.len());
+        for (contact, cells) in contacts {
+            contributions.push(Box::new(contact));
+            contact_cells.push(cells);
+        }
         if let Some(stabilisation) = &scene.solver.stabilisation {
             contributions.push(Box::new(Viscous::new(stabilisation.viscosity, &mesh.node_volumes()?)));
         }
         let steps = steps::steps(scene, &Program::new(scene), &mesh, &kinematics)?;
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
         let model = Model { kinematics, contributions };
-        Ok(Self { mesh, analysis: Analysis::new(model, newton(scene), solver_options(), threads), steps, ignored })
+        let analysis = Analysis::new(model, newton(scene), solver_options(), threads);
+        Ok(Self { mesh, analysis, steps, ignored, contact_cells })
     }
 }
 
@@ -110,12 +125,7 @@ fn newton(scene: &Scene) -> NewtonOptions {
     }
 }
 
-/// Ties the ends of a scene to their reference points.
-fn kinematics(scene: &Scene, mesh: &MeshModel) -> Result<Kinematics, ModelError> {
-    let sections = scene.end.iter().map(|end| section(end, mesh)).collect::<Result<Vec<_>, _>>()?;
-    Ok(Kinematics::new(mesh.mesh.points.clone(), sections)?)
-}
-
+/// The section that an end ties to its reference point.
 fn section(end: &End, mesh: &MeshModel) -> Result<Section, ModelError> {
     let nodes = mesh.node_set(end.set())?.to_vec();
     let centroid = mesh.centroid(&nodes);

@@ -1,7 +1,11 @@
 //! Columns of the history: one row per converged increment.
 
+use subrope_contact::ContactReport;
 use subrope_fem::analysis::{Analysis, IncrementRecord};
 use subrope_io::Column;
+
+use super::contacts;
+use crate::model::{MeshModel, RopeModel};
 
 const MOTIONS: [(&str, &str); 6] =
     [("ux", "mm"), ("uy", "mm"), ("uz", "mm"), ("rx", "rad"), ("ry", "rad"), ("rz", "rad")];
@@ -22,8 +26,22 @@ const ENERGIES: [(&str, &str); 8] = [
 ];
 const COUNTS: [(&str, &str); 4] = [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
 
+/// Energies that only contacts have.
+const CONTACT_ENERGIES: [(&str, &str); 3] =
+    [("contact_friction_work", "mJ"), ("contact_stored_energy", "mJ"), ("interference_work", "mJ")];
+/// Per pair.
+const CONTACT: [(&str, &str); 6] = [
+    ("normal_force", "N"),
+    ("friction_force", "N"),
+    ("friction_work", "mJ"),
+    ("area", "mm^2"),
+    ("largest_penetration", "mm"),
+    ("touching_points", "-"),
+];
+
 /// Headers, with units.
-pub fn columns(analysis: &Analysis) -> Vec<Column> {
+pub fn columns(model: &RopeModel) -> Vec<Column> {
+    let analysis = &model.analysis;
     let mut out: Vec<Column> = HEAD.iter().map(|(n, u)| Column::new(*n, *u)).collect();
     for point in analysis.model().kinematics.points() {
         for (name, unit) in MOTIONS.iter().chain(&REACTIONS) {
@@ -31,11 +49,20 @@ pub fn columns(analysis: &Analysis) -> Vec<Column> {
         }
     }
     out.extend(ENERGIES.iter().chain(&COUNTS).map(|(n, u)| Column::new(*n, *u)));
+    for strand in 1..=model.mesh.rope.as_ref().map_or(0, |r| r.strands.len()) {
+        out.push(Column::new(format!("strand_{strand}_fz"), "N"));
+    }
+    if contacts::contacts(analysis).next().is_some() {
+        out.extend(CONTACT_ENERGIES.map(|(n, u)| Column::new(n, u)));
+    }
+    for contact in contacts::contacts(analysis) {
+        out.extend(CONTACT.map(|(n, u)| Column::new(format!("{}_{n}", contact.name()), u)));
+    }
     out
 }
 
 /// The row of an increment. `cutbacks` counts since the row before. The sign of reactions: what acts on the model.
-pub fn row(analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Vec<f64> {
+pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Vec<f64> {
     let mut out =
         vec![analysis.time(), record.step_index as f64, record.increment as f64, record.fraction, record.length];
     let kinematics = &analysis.model().kinematics;
@@ -62,5 +89,13 @@ pub fn row(analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Ve
         // Unknown for an unsymmetric factorisation.
         record.negative_pivots.map_or(-1.0, |n| n as f64),
     ]);
+    out.extend(contacts::strand_forces(mesh, analysis));
+    if contacts::contacts(analysis).next().is_some() {
+        out.extend([totals.contact_friction, totals.contact_stored, totals.interference]);
+    }
+    for contact in contacts::contacts(analysis) {
+        let ContactReport { touching, area, normal, friction, penetration, work, .. } = contact.report();
+        out.extend([normal, friction, work, area, penetration, touching as f64]);
+    }
     out
 }

@@ -6,6 +6,8 @@ use subrope_fem::analysis::Analysis;
 use subrope_fem::solid::{PointSample, SolidFields};
 use subrope_material::StateKind;
 
+use super::contacts::{self, ContactField};
+use crate::model::{ContactCells, MeshModel};
 use crate::scene::Field;
 
 /// Where a field lives.
@@ -29,6 +31,15 @@ enum Content {
     LongitudinalShear,
     State(StateKind),
     Fibre,
+    Contact(ContactField),
+    Strand,
+}
+
+impl Content {
+    /// Whether it comes from the integration points of the solid.
+    fn is_sampled(self) -> bool {
+        !matches!(self, Self::Displacement | Self::Reaction | Self::Contact(_) | Self::Strand)
+    }
 }
 
 /// An array of the result file.
@@ -72,14 +83,22 @@ fn arrays_of(field: Field) -> Vec<FieldArray> {
             element("dissipation_longitudinal", 1, C::State(StateKind::LongitudinalDissipation)),
         ],
         Field::Fibre => vec![element("fibre", 3, C::Fibre)],
+        Field::Strand => vec![element("strand", 1, C::Strand)],
+        Field::Contact => vec![
+            element("contact_pressure", 1, C::Contact(ContactField::Pressure)),
+            element("contact_friction_work", 1, C::Contact(ContactField::FrictionWork)),
+            element("contact_slip", 1, C::Contact(ContactField::Slip)),
+        ],
     }
 }
 
-/// The arrays that a scene asks for and its law has.
-pub fn arrays(fields: &[Field], analysis: &Analysis) -> Vec<FieldArray> {
+/// The arrays that a scene asks for and its law, mesh and contacts have.
+pub fn arrays(fields: &[Field], mesh: &MeshModel, analysis: &Analysis) -> Vec<FieldArray> {
     let solid = solid(analysis);
     let exists = |array: &FieldArray| match array.content {
         Content::State(kind) => solid.is_some_and(|s| s.state_variables().iter().any(|v| v.kind == kind)),
+        Content::Contact(_) => contacts::contacts(analysis).next().is_some(),
+        Content::Strand => mesh.rope.is_some(),
         _ => true,
     };
     fields.iter().flat_map(|&f| arrays_of(f)).filter(exists).collect()
@@ -93,16 +112,25 @@ fn solid(analysis: &Analysis) -> Option<&dyn SolidFields> {
 ///
 /// # Errors
 /// As an evaluation of the law at the committed state.
-pub fn values(arrays: &[FieldArray], analysis: &Analysis) -> Result<Vec<Vec<f64>>, FemError> {
+pub fn values(
+    arrays: &[FieldArray],
+    mesh: &MeshModel,
+    cells: &[ContactCells],
+    analysis: &Analysis,
+) -> Result<Vec<Vec<f64>>, FemError> {
+    // Nodes of rigid bodies stand behind those of the mesh.
+    let nodal = 3 * mesh.mesh.point_count();
     let mut out: Vec<Vec<f64>> = arrays
         .iter()
         .map(|a| match a.content {
-            Content::Displacement => analysis.displacement().to_vec(),
-            Content::Reaction => tied_only(analysis),
+            Content::Displacement => analysis.displacement()[..nodal].to_vec(),
+            Content::Reaction => tied_only(analysis)[..nodal].to_vec(),
+            Content::Contact(kind) => contacts::field(kind, &mesh.mesh, analysis, cells),
+            Content::Strand => mesh.rope.iter().flat_map(|r| &r.strand_of_cell).map(|s| f64::from(s + 1)).collect(),
             _ => Vec::new(),
         })
         .collect();
-    if !arrays.iter().any(|a| a.place == Place::Element) {
+    if !arrays.iter().any(|a| a.content.is_sampled()) {
         return Ok(out);
     }
     let Some(solid) = solid(analysis) else { return Ok(out) };
@@ -110,14 +138,14 @@ pub fn values(arrays: &[FieldArray], analysis: &Analysis) -> Result<Vec<Vec<f64>
     for e in 0..solid.element_count() {
         let mut volume = 0.0;
         for (array, values) in arrays.iter().zip(&mut out) {
-            if array.place == Place::Element {
+            if array.content.is_sampled() {
                 values.resize((e + 1) * array.components, 0.0);
             }
         }
         solid.sample(e, analysis.displacement(), &mut |_, sample| {
             volume += sample.volume;
             for (array, values) in arrays.iter().zip(&mut out) {
-                if array.place == Place::Element {
+                if array.content.is_sampled() {
                     point.clear();
                     components(array.content, sample, solid, &mut point);
                     let target = &mut values[e * array.components..];
@@ -126,7 +154,7 @@ pub fn values(arrays: &[FieldArray], analysis: &Analysis) -> Result<Vec<Vec<f64>
             }
         })?;
         for (array, values) in arrays.iter().zip(&mut out) {
-            if array.place == Place::Element {
+            if array.content.is_sampled() {
                 finish(array.content, volume, &mut values[e * array.components..]);
             }
         }
@@ -165,7 +193,7 @@ fn components(content: Content, sample: &PointSample<'_>, solid: &dyn SolidField
             let fibre: Vector3<f64> = sample.deformation_gradient * sample.frame.column(0);
             out.extend_from_slice(fibre.normalize().as_slice());
         }
-        Content::Displacement | Content::Reaction => {}
+        Content::Displacement | Content::Reaction | Content::Contact(_) | Content::Strand => {}
     }
 }
 

@@ -1,6 +1,7 @@
 //! Running a scene: results on disk while it goes on, a summary at the end.
 
 mod columns;
+mod contacts;
 mod error;
 #[cfg(feature = "hdf5")]
 mod fields;

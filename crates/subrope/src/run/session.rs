@@ -12,7 +12,7 @@ use subrope_io::{HistoryWriter, IoError, write_json};
 use super::summary::{Status, Summary};
 use super::{RunError, RunFiles, RunOutcome, columns};
 use crate::Error;
-use crate::model::RopeModel;
+use crate::model::{ContactCells, MeshModel, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
 use crate::scene::SceneFile;
 
@@ -79,16 +79,26 @@ impl<'a> Session<'a> {
     ) -> Result<RunOutcome, Error> {
         let Self { file, files, output, started } = self;
         let count = model.steps.len();
-        let mut watch =
-            Watch { output, observer, interrupt, failure: None, attempt_start: started, cutbacks: 0, stable: true };
+        let RopeModel { mesh, contact_cells, analysis, steps, .. } = &mut *model;
+        let scenery = Scenery { mesh, cells: contact_cells };
+        let mut watch = Watch {
+            output,
+            scenery,
+            observer,
+            interrupt,
+            failure: None,
+            attempt_start: started,
+            cutbacks: 0,
+            stable: true,
+        };
         let mut outcome = Ok(());
-        for (index, step) in model.steps.iter().enumerate() {
+        for (index, step) in steps.iter().enumerate() {
             let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
             watch.observer.on_step(&start);
             watch.attempt_start = Instant::now();
-            outcome = model.analysis.run_step(step, &mut watch);
+            outcome = analysis.run_step(step, &mut watch);
             if outcome.is_ok() {
-                outcome = watch.end_step(&model.analysis);
+                outcome = watch.end_step(analysis);
             }
             if outcome.is_err() {
                 break;
@@ -103,7 +113,7 @@ impl<'a> Session<'a> {
                 .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
         }
         let interrupted = matches!(outcome, Err(FemError::Interrupted));
-        let closed = watch.output.close(&model.analysis);
+        let closed = watch.output.close(scenery, analysis);
         let status = Status::of(&outcome);
         let summary = Summary::new(file, model, status, started.elapsed().as_secs_f64());
         if let Some(error) = failure {
@@ -142,7 +152,7 @@ impl Output {
     #[cfg(feature = "hdf5")]
     fn open(file: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
         let scene = &file.scene;
-        let arrays = fields::arrays(&scene.output.fields, &model.analysis);
+        let arrays = fields::arrays(&scene.output.fields, &model.mesh, &model.analysis);
         let specs: Vec<FieldSpec> = arrays.iter().map(spec).collect();
         let provenance: Provenance = [
             ("version", env!("CARGO_PKG_VERSION").to_string()),
@@ -160,50 +170,56 @@ impl Output {
         };
         let path = files.folder.join(RESULTS);
         let mut out = Self {
-            history: HistoryWriter::create(&files.history, &columns::columns(&model.analysis))?,
+            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
             results: ResultWriter::create(&path, &model.mesh.mesh, &specs, &provenance, options)?,
             arrays,
             every: scene.output.every,
             waiting: 0,
             lost_frames: 0,
         };
-        out.frame(&model.analysis)?;
+        out.frame(Scenery { mesh: &model.mesh, cells: &model.contact_cells }, &model.analysis)?;
         Ok(out)
     }
 
     #[cfg(not(feature = "hdf5"))]
     fn open(_: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
-        Ok(Self { history: HistoryWriter::create(&files.history, &columns::columns(&model.analysis))? })
+        Ok(Self { history: HistoryWriter::create(&files.history, &columns::columns(model))? })
     }
 
-    fn increment(&mut self, analysis: &Analysis, record: &IncrementRecord, cutbacks: usize) -> Result<(), IoError> {
-        self.history.row(&columns::row(analysis, record, cutbacks))?;
+    fn increment(
+        &mut self,
+        scenery: Scenery<'_>,
+        analysis: &Analysis,
+        record: &IncrementRecord,
+        cutbacks: usize,
+    ) -> Result<(), IoError> {
+        self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
         #[cfg(feature = "hdf5")]
         {
             self.waiting += 1;
             if self.waiting >= self.every {
-                self.frame(analysis)?;
+                self.frame(scenery, analysis)?;
             }
         }
         Ok(())
     }
 
     /// Writes what is still waiting.
-    fn end_step(&mut self, analysis: &Analysis) -> Result<(), IoError> {
+    fn end_step(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
         #[cfg(feature = "hdf5")]
         if self.waiting > 0 {
-            self.frame(analysis)?;
+            self.frame(scenery, analysis)?;
         }
         #[cfg(not(feature = "hdf5"))]
-        let _ = analysis;
+        let _ = (scenery, analysis);
         Ok(())
     }
 
     #[cfg(feature = "hdf5")]
-    fn frame(&mut self, analysis: &Analysis) -> Result<(), IoError> {
+    fn frame(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
         self.waiting = 0;
         // The committed state was evaluated a moment ago: a law that fails here would be at the very edge of its range.
-        let Ok(values) = fields::values(&self.arrays, analysis) else {
+        let Ok(values) = fields::values(&self.arrays, scenery.mesh, scenery.cells, analysis) else {
             self.lost_frames += 1;
             return Ok(());
         };
@@ -211,8 +227,8 @@ impl Output {
         self.results.append(analysis.time(), &slices)
     }
 
-    fn close(mut self, analysis: &Analysis) -> Result<(), IoError> {
-        self.end_step(analysis)?;
+    fn close(mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
+        self.end_step(scenery, analysis)?;
         #[cfg(feature = "hdf5")]
         self.results.close()?;
         Ok(())
@@ -227,9 +243,18 @@ fn spec(array: &FieldArray) -> FieldSpec {
     }
 }
 
+/// What does not change during a run.
+#[derive(Clone, Copy)]
+struct Scenery<'a> {
+    mesh: &'a MeshModel,
+    #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
+    cells: &'a [ContactCells],
+}
+
 /// Passes what the kernel tells to the files and to the observer.
 struct Watch<'a> {
     output: Output,
+    scenery: Scenery<'a>,
     observer: &'a mut dyn Observer,
     interrupt: Option<&'a AtomicBool>,
     failure: Option<IoError>,
@@ -249,7 +274,7 @@ impl Watch<'_> {
     }
 
     fn end_step(&mut self, analysis: &Analysis) -> Result<(), FemError> {
-        let result = self.output.end_step(analysis);
+        let result = self.output.end_step(self.scenery, analysis);
         self.keep(result)
     }
 
@@ -286,7 +311,7 @@ impl Watch<'_> {
 
 impl subrope_fem::analysis::Observer for Watch<'_> {
     fn converged(&mut self, analysis: &Analysis, record: &IncrementRecord) -> Result<Control, FemError> {
-        let result = self.output.increment(analysis, record, self.cutbacks);
+        let result = self.output.increment(self.scenery, analysis, record, self.cutbacks);
         self.cutbacks = 0;
         self.keep(result)?;
         self.tell(record, Outcome::Converged);

@@ -6,6 +6,7 @@ use serde::Serialize;
 use subrope_fem::FemError;
 use subrope_fem::analysis::Phase;
 
+use super::contacts::{self, PairSummary};
 use super::findings::Findings;
 use super::session::integration_points;
 use crate::model::RopeModel;
@@ -46,6 +47,12 @@ pub struct Summary {
     pub reference_points: BTreeMap<String, PointSummary>,
     /// Energies.
     pub energies: EnergySummary,
+    /// Contacts, where there are any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<PairSummary>,
+    /// Force along z at the high end that each strand of a rope carries.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strand_forces_n: Vec<f64>,
     /// Findings on a bent strand, where there is one.
     pub findings: Option<Findings>,
     /// Sizes.
@@ -92,6 +99,12 @@ pub struct EnergySummary {
     pub dissipated_longitudinal_midpoint_mj: f64,
     /// Spent by viscous stabilisation.
     pub stabilising_mj: f64,
+    /// Dissipated by friction of contacts, mid-point values.
+    pub contact_friction_mj: f64,
+    /// Stored in the compliance of contacts.
+    pub contact_stored_mj: f64,
+    /// Put in by pressing apart surfaces that overlapped at the start; part of the external work.
+    pub interference_mj: f64,
     /// External work less everything else, over the external work.
     pub energy_error: f64,
 }
@@ -132,6 +145,10 @@ pub struct CountSummary {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Rounds in which an augmented Lagrangian moved its multipliers.
+    pub augmentations: usize,
+    /// Patterns made anew because surfaces touched elsewhere.
+    pub searches: usize,
     /// Converged increments whose tangent has negative pivots: unstable equilibria.
     pub unstable_increments: usize,
 }
@@ -161,6 +178,8 @@ impl Summary {
             time_s: analysis.time(),
             reference_points: points(model),
             energies: energies(model),
+            contacts: contacts::summaries(analysis),
+            strand_forces_n: contacts::strand_forces(&model.mesh, analysis),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
             size: sizes(model),
             counts: counts(model),
@@ -193,6 +212,11 @@ impl Summary {
             format!("of {work} mJ put in, {stored} mJ are stored and nothing is lost to sliding")
         };
         parts.push(energy);
+        if !self.contacts.is_empty() {
+            let normal: f64 = self.contacts.iter().map(|c| c.normal_force_n).sum();
+            let friction = number(e.contact_friction_mj);
+            parts.push(format!("contacts press with {} N and lose {friction} mJ to friction", number(normal)));
+        }
         format!("At {} s: {}; energy error {:.1e}.", number(self.time_s), parts.join("; "), e.energy_error)
     }
 }
@@ -237,6 +261,9 @@ fn energies(model: &RopeModel) -> EnergySummary {
         dissipated_transverse_midpoint_mj: t.dissipated_mid[0],
         dissipated_longitudinal_midpoint_mj: t.dissipated_mid[1],
         stabilising_mj: t.stabilising,
+        contact_friction_mj: t.contact_friction,
+        contact_stored_mj: t.contact_stored,
+        interference_mj: t.interference,
         energy_error: t.energy_error(),
     }
 }
@@ -266,6 +293,8 @@ fn counts(model: &RopeModel) -> CountSummary {
         iterations: t.iterations,
         cutbacks: t.cutbacks,
         factorisations: t.factorisations,
+        augmentations: t.augmentations,
+        searches: t.searches,
         unstable_increments: t.unstable_increments,
     }
 }

@@ -50,11 +50,15 @@ pub enum Field {
     Fibre,
     /// Reaction forces of the nodes \[N\].
     Reactions,
+    /// Contact pressure \[MPa\], friction work per area \[mJ/mm^2\] and slip \[mm\] on the elements that touch.
+    Contact,
+    /// Number of the strand of a rope.
+    Strand,
 }
 
 impl Field {
     /// All fields.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Displacement,
         Self::Stress,
         Self::StrainModes,
@@ -62,6 +66,8 @@ impl Field {
         Self::Dissipation,
         Self::Fibre,
         Self::Reactions,
+        Self::Contact,
+        Self::Strand,
     ];
 }
 

@@ -1,0 +1,180 @@
+//! Contacts and rigid bodies of a scene.
+
+use nalgebra::{Matrix6, Vector3};
+use subrope_contact::{Contact, ContactError, ContactOptions, FrictionTangent, Method, Smoothing, Surface};
+use subrope_fem::kinematics::{Section, SectionKind};
+use subrope_geometry::{Axis, Face, Mesh, surface_area};
+use subrope_material::{PointInput, Request, Response};
+
+use super::{MeshModel, ModelError};
+use crate::scene::{self, ContactMethod, ContactSmoothing, ContactTangent, RigidShape, Scene};
+
+/// Most rounds of an augmented Lagrangian.
+const ROUNDS: usize = 30;
+/// Candidates of contact are searched up to this part of the radius.
+const REACH: f64 = 0.1;
+
+/// Nodes of a rigid body: the origin of its frame and one node along each axis, behind those of the mesh.
+pub(super) struct RigidBody {
+    nodes: [u32; 4],
+    arm: f64,
+    shape: RigidShape,
+    radius: f64,
+}
+
+/// Adds the frames of rigid bodies to the nodes and ties each to its reference point.
+pub(super) fn rigid_bodies(
+    scene: &Scene,
+    mesh: &MeshModel,
+    positions: &mut Vec<Vector3<f64>>,
+    sections: &mut Vec<Section>,
+) -> Result<Vec<RigidBody>, ModelError> {
+    let arm = size(scene, mesh);
+    let mut out = Vec::new();
+    for rigid in &scene.rigid {
+        let axis = Axis::new(Vector3::from(rigid.point), Vector3::from(rigid.axis))?;
+        let first = positions.len() as u32;
+        let nodes = [first, first + 1, first + 2, first + 3];
+        positions.push(axis.origin());
+        positions.extend([axis.reference(), axis.transverse(), axis.direction()].map(|d| axis.origin() + d * arm));
+        sections.push(Section {
+            name: rigid.name.clone(),
+            position: axis.origin(),
+            axis: axis.direction(),
+            nodes: nodes.to_vec(),
+            kind: SectionKind::Rigid,
+        });
+        out.push(RigidBody { nodes, arm, shape: rigid.shape, radius: rigid.radius.unwrap_or_default() });
+    }
+    Ok(out)
+}
+
+/// Faces that the patches of a contact belong to.
+#[derive(Clone, Debug, Default)]
+pub struct ContactCells {
+    /// Of the primary surface; none of a rigid body.
+    pub primary: Vec<Face>,
+    /// Of the secondary surface.
+    pub secondary: Vec<Face>,
+}
+
+/// All contacts of a scene; one that names no surfaces stands for all neighbouring strands.
+pub(super) fn contacts(
+    scene: &Scene,
+    mesh: &MeshModel,
+    bodies: &[RigidBody],
+    positions: &[Vector3<f64>],
+) -> Result<Vec<(Contact, ContactCells)>, ModelError> {
+    if scene.contact.is_empty() {
+        return Ok(Vec::new());
+    }
+    let modulus = transverse_modulus(&scene.law)?;
+    let mut out = Vec::new();
+    for entry in &scene.contact {
+        for (name, primary, secondary) in pairs(scene, entry) {
+            let smoothing = match entry.smoothing {
+                ContactSmoothing::Spline => Smoothing::Spline,
+                ContactSmoothing::None => Smoothing::None,
+            };
+            let first = match scene.rigid.iter().position(|r| r.name == primary) {
+                Some(index) => rigid_surface(&bodies[index]),
+                None => surface(&mesh.mesh, &primary, smoothing)?,
+            };
+            let second = surface(&mesh.mesh, &secondary, smoothing)?;
+            let size = surface_size(scene, &mesh.mesh, &secondary)?;
+            let options = options(scene, entry, modulus, size);
+            let contact = Contact::new(&name, first, second, positions, options).map_err(refused)?;
+            let primary = faces(&mesh.mesh, &primary).map(<[Face]>::to_vec).unwrap_or_default();
+            out.push((contact, ContactCells { primary, secondary: faces(&mesh.mesh, &secondary)?.to_vec() }));
+        }
+    }
+    Ok(out)
+}
+
+fn refused(cause: ContactError) -> ModelError {
+    ModelError::Contact(cause)
+}
+
+fn pairs(scene: &Scene, entry: &scene::Contact) -> Vec<(String, String, String)> {
+    if let (Some(primary), Some(secondary)) = (&entry.primary, &entry.secondary) {
+        return vec![(entry.name.clone(), primary.clone(), secondary.clone())];
+    }
+    let neighbours = scene.rope.as_ref().map(scene::Rope::neighbours).unwrap_or_default();
+    let named = |(a, b)| (format!("{}_{a}_{b}", entry.name), format!("LATERAL_{a}"), format!("LATERAL_{b}"));
+    neighbours.into_iter().map(named).collect()
+}
+
+fn options(scene: &Scene, entry: &scene::Contact, modulus: f64, size: f64) -> ContactOptions {
+    let base = ContactOptions::new(modulus, size);
+    let penalty = entry.penalty.unwrap_or(base.penalty);
+    ContactOptions {
+        penalty,
+        tangential_penalty: entry.tangential_ratio * penalty,
+        friction: entry.friction,
+        method: match entry.method {
+            ContactMethod::Penalty => Method::Penalty,
+            ContactMethod::Augmented => {
+                Method::Augmented { penetration: entry.penetration * size, rounds: ROUNDS }
+            }
+        },
+        tangent: match entry.tangent {
+            ContactTangent::Exact => FrictionTangent::Exact,
+            ContactTangent::Symmetric => FrictionTangent::Symmetric,
+        },
+        points: entry.points,
+        reach: REACH * size,
+        ramp: entry.ramp.unwrap_or_else(|| scene.step.first().map_or(0.0, |s| s.duration)),
+    }
+}
+
+fn rigid_surface(body: &RigidBody) -> Surface {
+    match body.shape {
+        RigidShape::Cylinder => Surface::cylinder(body.nodes, body.radius, body.arm),
+        RigidShape::Plane => Surface::plane(body.nodes, body.arm),
+    }
+}
+
+fn faces<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a [Face], ModelError> {
+    let found = mesh.surfaces.get(name).or_else(|| mesh.surfaces.get(&name.to_uppercase()));
+    found.map(Vec::as_slice).ok_or_else(|| ModelError::UnknownSet {
+        kind: "surface",
+        name: name.into(),
+        available: mesh.surfaces.keys().cloned().collect(),
+    })
+}
+
+fn surface(mesh: &Mesh, name: &str, smoothing: Smoothing) -> Result<Surface, ModelError> {
+    Surface::new(mesh, faces(mesh, name)?, smoothing).map_err(refused)
+}
+
+/// Radius of a generated strand, else a length that belongs to the mesh.
+fn size(scene: &Scene, mesh: &MeshModel) -> f64 {
+    let generated = scene.rope.as_ref().map(|r| r.radius).or(scene.strand.as_ref().map(|s| s.radius));
+    generated.unwrap_or_else(|| {
+        let low = mesh.mesh.points.iter().fold(Vector3::repeat(f64::INFINITY), |a, p| a.inf(p));
+        let high = mesh.mesh.points.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
+        0.1 * (high - low).norm()
+    })
+}
+
+/// Radius of a generated strand; of a surface of a deck 2.5 times the side of a mean face, as on a ring of sixteen.
+fn surface_size(scene: &Scene, mesh: &Mesh, name: &str) -> Result<f64, ModelError> {
+    let generated = scene.rope.as_ref().map(|r| r.radius).or(scene.strand.as_ref().map(|s| s.radius));
+    match generated {
+        Some(radius) => Ok(radius),
+        None => {
+            let faces = faces(mesh, name)?;
+            Ok(2.5 * (surface_area(mesh, faces)? / faces.len().max(1) as f64).sqrt())
+        }
+    }
+}
+
+/// Stiffness `dS_22/dE_22` of the law across the fibres at rest \[MPa\].
+fn transverse_modulus(law: &scene::Law) -> Result<f64, ModelError> {
+    let law = crate::law::build(law)?;
+    let old = vec![0.0; law.state_len()];
+    let mut new = old.clone();
+    let mut response = Response { tangent: Matrix6::zeros(), ..Response::default() };
+    law.evaluate(&PointInput::new(nalgebra::Matrix3::zeros()), &old, &mut new, Request::Tangent, &mut response)?;
+    Ok(response.tangent[(1, 1)])
+}
