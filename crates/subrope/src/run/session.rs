@@ -62,7 +62,7 @@ impl<'a> Session<'a> {
         // A summary of an earlier run must not stand beside new results.
         match std::fs::remove_file(&files.summary) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(RunError::Folder { path: files.summary, source }.into());
+                return Err(RunError::Replace { path: files.summary, source }.into());
             }
             _ => {}
         }
@@ -167,8 +167,15 @@ impl Output {
             waiting: 0,
             lost_frames: 0,
         };
-        out.frame(&model.analysis)?;
-        Ok(out)
+        match out.frame(&model.analysis) {
+            Ok(()) => Ok(out),
+            Err(error) => {
+                // Without a step the files are of no use, and readers complain of them.
+                drop(out);
+                let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_file(&files.history));
+                Err(error)
+            }
+        }
     }
 
     #[cfg(not(feature = "hdf5"))]
