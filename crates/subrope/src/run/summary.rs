@@ -193,7 +193,12 @@ impl Summary {
             format!("of {work} mJ put in, {stored} mJ are stored and nothing is lost to sliding")
         };
         parts.push(energy);
-        format!("At {} s: {}; energy error {:.1e}.", number(self.time_s), parts.join("; "), e.energy_error)
+        format!(
+            "At {} s: {}; energy balance off by {:.1e} of the work.",
+            number(self.time_s),
+            parts.join("; "),
+            e.energy_error
+        )
     }
 }
 
