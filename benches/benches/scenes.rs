@@ -1,5 +1,5 @@
 //! Whole scenes, one thread: the coarse bent strand, and the race P1 (2400 bricks, orthotropic, ten equal steps to
-//! +-90 degrees) whose peer is timed by `scripts/race.py`.
+//! +-90 degrees) that CHANGELOG compares with another program.
 
 use std::hint::black_box;
 

@@ -65,6 +65,14 @@ pub enum ErrorClass {
 }
 
 impl IoError {
+    /// What kind of failure the system reported, where it was the system that refused an output.
+    pub fn system_kind(&self) -> Option<std::io::ErrorKind> {
+        match self {
+            Self::Output(OutputError { cause: OutputCause::System(error), .. }) => Some(error.kind()),
+            _ => None,
+        }
+    }
+
     /// Whether the input, the values or the output is at fault.
     pub const fn class(&self) -> ErrorClass {
         match self {

@@ -134,7 +134,10 @@ impl fmt::Display for CheckReport {
         }
         if let Some(a) = &self.angles {
             let [least, mean, greatest] = [a.least, a.mean, a.greatest].map(f64::to_degrees);
-            writeln!(f, "  yarns    {least:.2} to {greatest:.2} degrees from the z axis, mean {mean:.2}")?;
+            writeln!(
+                f,
+                "  yarns    {least:.2} to {greatest:.2} degrees from the z axis at the integration points, mean {mean:.2}"
+            )?;
         }
         let s = &self.system;
         let (matrix, method) = if s.symmetric { ("symmetric", "LDL^T") } else { ("unsymmetric", "LU") };

@@ -7,7 +7,7 @@ use miette::{Diagnostic, LabeledSpan, SourceCode};
 
 use crate::model::ModelError;
 use crate::point::PointError;
-use crate::run::RunError;
+use crate::run::{RunError, output_advice};
 use crate::scene::SceneError;
 
 /// Why a command did not do its work.
@@ -124,6 +124,7 @@ impl Error {
     fn advice(&self) -> Option<String> {
         match self {
             Self::Run(error) => error.advice().map(str::to_owned),
+            Self::Output { source, .. } => output_advice(source.kind()).map(str::to_owned),
             Self::MeshFormat { .. } if cfg!(feature = "hdf5") => Some("name it .inp (Abaqus) or .vtkhdf".to_owned()),
             Self::MeshFormat { .. } => Some("name it .inp (Abaqus); VTKHDF is not built in".to_owned()),
             Self::Exists { .. } => Some("choose another folder, or move the file away".to_owned()),

@@ -19,9 +19,24 @@ pub(super) fn failure(path: &Path, action: Action) -> impl Fn(hdf5::Error) -> Io
     move |error| OutputError::new(path, action, cause(&error)).into()
 }
 
-/// What the library says.
+/// What the system said, where the library tells it; otherwise what the library says.
 pub(super) fn cause(error: &hdf5::Error) -> OutputCause {
-    OutputCause::Hdf5 { message: error.to_string() }
+    let message = error.to_string();
+    match system_error(&message) {
+        Some(system) => OutputCause::System(system),
+        None => OutputCause::Hdf5 { message: one_line(&message) },
+    }
+}
+
+/// The library reports a failed call with time, addresses and, among them, `errno = 28`.
+fn system_error(message: &str) -> Option<io::Error> {
+    let (_, after) = message.split_once("errno = ")?;
+    let digits = after.find(|c: char| !c.is_ascii_digit()).map_or(after, |end| &after[..end]);
+    digits.parse().ok().filter(|&code| code != 0).map(io::Error::from_raw_os_error)
+}
+
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Creates a file, replacing an older one: earliest formats allowed, nothing newer than HDF5 1.10, no file lock.
@@ -198,4 +213,19 @@ pub(super) fn write_rows<T: H5Type + Copy>(
     let mut block = dataset.read_slice_2d::<T, _>((rows.clone(), ..))?;
     block.iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     dataset.write_slice(&block, (rows, ..))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_system_is_quoted_where_it_spoke() {
+        let message = "H5Fflush(): file write failed: time = Mon Jan  5 10:00:00 2026\n, filename = 'a', errno = 28, \
+                       error message = 'No space left on device', buf = 0x55";
+        assert_eq!(system_error(message).map(|e| e.kind()), Some(io::ErrorKind::StorageFull));
+        assert!(system_error("H5Gcreate2(): name already exists").is_none());
+        assert!(system_error("errno = 0, fine").is_none());
+        assert_eq!(one_line("a\n, b"), "a , b");
+    }
 }

@@ -29,27 +29,28 @@ pub(super) enum Command {
         #[arg(long)]
         list: bool,
     },
-    /// Check a scene without running it
+    /// Check a scene without running it: counts, mesh quality, yarn angles, memory
     Check {
         /// The scene file
         scene: PathBuf,
     },
-    /// Run a scene
+    /// Run a scene: results.vtkhdf, history.csv, summary.json
     Run {
         /// The scene file
         scene: PathBuf,
-        /// Folder of the results, in place of the scene's
+        /// Folder of the results [default: the scene's output.folder, or out/NAME beside the scene NAME.toml]
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Threads, in place of the scene's
+        /// Threads [default: the scene's solver.threads, or as many as there are processors]
         #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
         threads: Option<u16>,
     },
     /// Drive a law along the paths of a point file (.json or .toml)
     Point {
-        /// The point file
+        /// The point file: .json (every step) or .toml (a few targets, the steps between them are filled in)
         file: PathBuf,
-        /// Where to write: .csv for a table, anything else for JSON; standard output when left out
+        /// Where to write: a table to NAME.csv, JSON to any other name [default: the standard output, a table for
+        /// .toml and JSON for .json]
         #[arg(short, long)]
         output: Option<PathBuf>,
         /// Also the tangent by difference quotients (JSON only)
@@ -64,7 +65,7 @@ pub(super) enum Command {
         #[arg(short, long)]
         output: PathBuf,
     },
-    /// Print the JSON schema of scene files
+    /// Print the JSON schema of scene files: every key with its unit
     Schema {
         /// The schema of point files (TOML) instead
         #[arg(long)]

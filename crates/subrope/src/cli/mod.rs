@@ -4,16 +4,15 @@ mod arguments;
 mod commands;
 mod interrupt;
 mod output;
+mod report;
 mod templates;
 mod terminal;
 
 use std::io::{IsTerminal as _, Write as _};
 
-use clap::Parser as _;
-use miette::GraphicalReportHandler;
-
 use crate::{Error, ExitCode};
 use arguments::Arguments;
+use clap::Parser as _;
 
 /// Reads the arguments, runs the command, and prints the error if there is one.
 #[must_use]
@@ -31,8 +30,7 @@ pub fn main() -> std::process::ExitCode {
 /// On a terminal with colours and frames, otherwise as plain text.
 fn explain(error: &Error) {
     let mut stderr = std::io::stderr();
-    let mut text = String::new();
-    let drawn = stderr.is_terminal() && GraphicalReportHandler::new().render_report(&mut text, error).is_ok();
+    let drawn = stderr.is_terminal().then(|| report::graphical(error).ok()).flatten();
     // Nothing is left to do when even the error cannot be printed.
-    let _ = stderr.write_all(if drawn { text } else { error.plain() }.as_bytes());
+    let _ = stderr.write_all(drawn.unwrap_or_else(|| error.plain()).as_bytes());
 }

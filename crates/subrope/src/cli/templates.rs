@@ -63,9 +63,9 @@ fn readme(template: &Template) -> String {
         "# {name}\n\n\
          A scene of subrope: {about}. Units: mm, N, MPa, s; angles in degrees.\n\n\
          ```sh\n\
-         subrope check {name}.toml    # every key, value and name\n\
+         subrope check {name}.toml    # every key, value and name; counts, mesh quality, memory\n\
          subrope run {name}.toml      # results in out/{name}\n\
-         subrope mesh {name}.toml -o mesh.vtkhdf\n\
+         subrope mesh {name}.toml -o mesh.vtkhdf   # or mesh.inp, for Abaqus and CalculiX\n\
          ```\n\n\
          Results are read by ParaView 5.12 or newer (VTKHDF). All keys with their units: `subrope schema`.\n\
          Other scenes to start from: `subrope new --list`.\n"

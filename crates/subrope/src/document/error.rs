@@ -83,6 +83,12 @@ pub enum ProblemKind {
         /// The names defined.
         allowed: Vec<String>,
     },
+    /// A file that cannot be used.
+    #[error("{cause}")]
+    UnusableFile {
+        /// Why.
+        cause: String,
+    },
     /// Values that contradict each other.
     #[error("{cause}")]
     Inconsistent {
@@ -103,6 +109,7 @@ impl ProblemKind {
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
             Self::UnknownName { .. } => "not defined",
+            Self::UnusableFile { .. } => "this file",
             Self::Inconsistent { .. } => "contradiction",
         }
     }

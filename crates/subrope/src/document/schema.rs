@@ -11,11 +11,13 @@ pub fn schema_of<T: JsonSchema>() -> Value {
     schema
 }
 
-/// Documentation escapes brackets, a schema does not.
+/// Documentation escapes brackets and marks links with them, a schema does not.
 fn unescape(value: &mut Value) {
     match value {
         Value::Object(map) => map.iter_mut().for_each(|(key, entry)| match entry {
-            Value::String(text) if key == "description" => *text = text.replace("\\[", "[").replace("\\]", "]"),
+            Value::String(text) if key == "description" => {
+                *text = text.replace("[`", "`").replace("`]", "`").replace("\\[", "[").replace("\\]", "]")
+            }
             other => unescape(other),
         }),
         Value::Array(items) => items.iter_mut().for_each(unescape),

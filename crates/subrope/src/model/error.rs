@@ -1,5 +1,7 @@
 //! Why a scene makes no model.
 
+use std::path::PathBuf;
+
 use subrope_contact::ContactError;
 use subrope_fem::FemError;
 use subrope_geometry::GeometryError;
@@ -13,6 +15,15 @@ pub enum ModelError {
     /// The mesh cannot be made or is not sound.
     #[error("mesh: {0}")]
     Geometry(#[from] GeometryError),
+    /// The mesh of a deck is not sound.
+    #[error("deck {}: {cause}", path.display())]
+    DeckMesh {
+        /// The deck.
+        path: PathBuf,
+        /// What is wrong.
+        #[source]
+        cause: GeometryError,
+    },
     /// The deck cannot be read.
     #[error(transparent)]
     Deck(#[from] IoError),

@@ -80,8 +80,9 @@ impl MeshModel {
     fn read(entry: &Deck, path: &std::path::Path) -> Result<(Self, Vec<Ignored>), ModelError> {
         let deck = read_deck(path)?;
         let mut mesh = deck.mesh;
-        mesh.validate()?;
-        quality::check_orientation(&mesh)?;
+        mesh.validate()
+            .and_then(|()| quality::check_orientation(&mesh))
+            .map_err(|cause| ModelError::DeckMesh { path: path.to_path_buf(), cause })?;
         let frames = match &entry.fibres {
             Fibres::Deck => fibre_frames(&mesh, &per_cell(&mesh, &deck.frames)?)?,
             Fibres::Parallel(direction) => fibre_frames(&mesh, &Parallel::new(frame_along(direction)?)?)?,

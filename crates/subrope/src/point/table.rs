@@ -34,7 +34,7 @@ fn heading() -> String {
     names.extend(six("S_fibre", VOIGT, "MPa"));
     names.extend(six("S_global", VOIGT, "MPa"));
     names.extend(STATE.map(|n| format!("{n} [{}]", if n.starts_with("d_") { "mJ/mm^3" } else { "-" })));
-    names.extend(["dW_t [mJ/mm^3]", "dW_l [mJ/mm^3]", "slip_t", "slip_l"].map(str::to_owned));
+    names.extend(["dW_t [mJ/mm^3]", "dW_l [mJ/mm^3]", "slip_t [-]", "slip_l [-]"].map(str::to_owned));
     names.join(",") + "\n"
 }
 

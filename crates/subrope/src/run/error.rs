@@ -1,5 +1,6 @@
 //! Why a run ended early.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use subrope_fem::FemError;
@@ -38,6 +39,14 @@ pub enum RunError {
         /// Why.
         source: std::io::Error,
     },
+    /// A file of an earlier run could not be taken away.
+    #[error("cannot replace {}: {source}", path.display())]
+    Replace {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
 }
 
 impl RunError {
@@ -53,7 +62,7 @@ impl RunError {
                 _ => ExitCode::Input,
             },
             Self::Interrupted { .. } => ExitCode::NotConverged,
-            Self::Output(_) | Self::Folder { .. } => ExitCode::Output,
+            Self::Output(_) | Self::Folder { .. } | Self::Replace { .. } => ExitCode::Output,
         }
     }
 
@@ -77,7 +86,22 @@ impl RunError {
                 _ => None,
             },
             Self::Interrupted { .. } => None,
-            Self::Output(_) | Self::Folder { .. } => Some("free some space or choose another folder with --out"),
+            Self::Output(error) => output_advice(error.system_kind()?),
+            Self::Folder { source, .. } | Self::Replace { source, .. } => output_advice(source.kind()),
         }
+    }
+}
+
+/// What to do when the system refuses an output.
+pub(crate) fn output_advice(kind: ErrorKind) -> Option<&'static str> {
+    match kind {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            Some("free some space, or write elsewhere; what was written before is kept")
+        }
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => Some("choose a folder that you may write to"),
+        ErrorKind::NotFound => Some("make the folder first, or choose another one"),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => Some("a file is in the way of a folder of that name"),
+        ErrorKind::IsADirectory => Some("a folder is in the way of a file of that name"),
+        _ => None,
     }
 }

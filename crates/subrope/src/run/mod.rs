@@ -11,6 +11,7 @@ mod session;
 mod summary;
 
 pub use error::RunError;
+pub(crate) use error::output_advice;
 pub use findings::{Findings, Mode, ModeFinding, Zone};
 pub use sections::{SectionShape, section_shapes};
 pub use summary::{Status, Summary};

@@ -62,7 +62,7 @@ impl<'a> Session<'a> {
         // A summary of an earlier run must not stand beside new results.
         match std::fs::remove_file(&files.summary) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(RunError::Folder { path: files.summary, source }.into());
+                return Err(RunError::Replace { path: files.summary, source }.into());
             }
             _ => {}
         }
@@ -177,8 +177,16 @@ impl Output {
             waiting: 0,
             lost_frames: 0,
         };
-        out.frame(Scenery { mesh: &model.mesh, cells: &model.contact_cells }, &model.analysis)?;
-        Ok(out)
+        let scenery = Scenery { mesh: &model.mesh, cells: &model.contact_cells };
+        match out.frame(scenery, &model.analysis) {
+            Ok(()) => Ok(out),
+            Err(error) => {
+                // Without a step the files are of no use, and readers complain of them.
+                drop(out);
+                let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_file(&files.history));
+                Err(error)
+            }
+        }
     }
 
     #[cfg(not(feature = "hdf5"))]

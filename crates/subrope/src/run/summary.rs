@@ -217,7 +217,12 @@ impl Summary {
             let friction = number(e.contact_friction_mj);
             parts.push(format!("contacts press with {} N and lose {friction} mJ to friction", number(normal)));
         }
-        format!("At {} s: {}; energy error {:.1e}.", number(self.time_s), parts.join("; "), e.energy_error)
+        format!(
+            "At {} s: {}; energy balance off by {:.1e} of the work.",
+            number(self.time_s),
+            parts.join("; "),
+            e.energy_error
+        )
     }
 }
 

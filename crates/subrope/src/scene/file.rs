@@ -80,15 +80,21 @@ fn text_of(name: &str, bytes: Vec<u8>) -> Result<String, SceneError> {
 }
 
 fn read_deck(file: &Path, document: &Document) -> Result<DeckContent, SceneError> {
-    let bytes = std::fs::read(file).map_err(|error| document.invalid(vec![unreadable(file, &error, document)]))?;
+    let refused = |cause, help| document.invalid(vec![unusable(document, cause, help)]);
+    let bytes = std::fs::read(file).map_err(|error| {
+        refused(format!("cannot read the deck {}: {error}", file.display()), "the path is relative to the scene file")
+    })?;
     let names = DeckNames::scan(&String::from_utf8_lossy(&bytes));
+    if names.lacks_mesh() {
+        let cause = format!("{} is no deck: it holds no *NODE and no *ELEMENT", file.display());
+        return Err(refused(cause, "a deck is the text of an Abaqus or CalculiX input file (.inp)").into());
+    }
     Ok(DeckContent { bytes, names })
 }
 
-fn unreadable(file: &Path, error: &std::io::Error, document: &Document) -> Problem {
-    let cause = format!("cannot read the deck {}: {error}", file.display());
+fn unusable(document: &Document, cause: String, help: &str) -> Problem {
     let at = Location::root().at("deck").at("file");
-    document.problem(&at, ProblemKind::Inconsistent { cause }).help("the path is relative to the scene file")
+    document.problem(&at, ProblemKind::UnusableFile { cause }).help(help)
 }
 
 fn fingerprint(parts: [&[u8]; 2]) -> String {

@@ -11,6 +11,8 @@ pub(super) struct DeckNames {
     pub surfaces: BTreeSet<String>,
     /// Whether the deck includes other files, whose names are not seen.
     pub includes: bool,
+    /// Whether nodes or elements were seen.
+    mesh: bool,
 }
 
 impl DeckNames {
@@ -21,11 +23,17 @@ impl DeckNames {
             let mut parts = line.split(',').map(str::trim);
             let keyword = parts.next().unwrap_or_default().to_ascii_uppercase();
             names.includes |= keyword == "*INCLUDE";
+            names.mesh |= keyword == "*NODE" || keyword == "*ELEMENT";
             for (parameter, value) in parts.filter_map(|p| p.split_once('=')) {
                 names.note(&keyword, &parameter.trim().to_ascii_uppercase(), value.trim().trim_matches('"'));
             }
         }
         names
+    }
+
+    /// Whether there is no mesh, neither in the deck nor possibly in a file it includes.
+    pub fn lacks_mesh(&self) -> bool {
+        !self.mesh && !self.includes
     }
 
     fn note(&mut self, keyword: &str, parameter: &str, value: &str) {
@@ -49,6 +57,8 @@ mod tests {
         let names = DeckNames::scan(deck);
         assert_eq!(names.sets.iter().map(String::as_str).collect::<Vec<_>>(), ["END_A", "all_nodes"]);
         assert!(names.surfaces.contains("Top face"));
-        assert!(!names.includes);
+        assert!(!names.includes && !names.lacks_mesh());
+        assert!(DeckNames::scan("title = \"a scene\"\n").lacks_mesh());
+        assert!(!DeckNames::scan("*Include, input=mesh.inp\n").lacks_mesh());
     }
 }
