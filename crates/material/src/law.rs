@@ -163,3 +163,40 @@ pub trait Law: Send + Sync + std::fmt::Debug {
         out: &mut Response,
     ) -> Result<(), LawError>;
 }
+
+impl Law for Box<dyn Law> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn state_variables(&self) -> &[StateVariable] {
+        (**self).state_variables()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        (**self).is_symmetric()
+    }
+
+    fn has_potential(&self) -> bool {
+        (**self).has_potential()
+    }
+
+    fn has_fibre_term(&self) -> bool {
+        (**self).has_fibre_term()
+    }
+
+    fn modal_forces(&self, input: &PointInput, old: &[f64]) -> Result<Option<ConjugateForces>, LawError> {
+        (**self).modal_forces(input, old)
+    }
+
+    fn evaluate(
+        &self,
+        input: &PointInput,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut Response,
+    ) -> Result<(), LawError> {
+        (**self).evaluate(input, old, new, request, out)
+    }
+}
