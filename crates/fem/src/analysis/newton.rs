@@ -20,6 +20,9 @@ pub struct Attempt {
 /// The scale of rounding in the residual, over the norm of all element forces.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// A relative residual that is nothing but rounding.
+const ROUNDED: f64 = 1e-13;
+
 /// Part of the norm of the element forces below which reactions do not count as a reference.
 const SMALL_REACTION: f64 = 1e-6;
 
@@ -64,6 +67,10 @@ impl Analysis {
                 return Ok(());
             }
             if record.iterations >= self.options.max_iterations || hopeless(&record.residuals, attempt.last_resort) {
+                // Nothing is left but rounding: the energy has no scale to fall below.
+                if relative <= ROUNDED.min(tolerance) {
+                    return Ok(());
+                }
                 let iterations = record.iterations;
                 return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
             }
