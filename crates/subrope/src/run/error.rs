@@ -77,6 +77,9 @@ impl RunError {
                 _ => None,
             },
             Self::Interrupted { .. } => None,
+            Self::Output(IoError::Value(_)) => {
+                Some("a result is not finite or too large for single precision: check the units of the scene")
+            }
             Self::Output(_) | Self::Folder { .. } => Some("free some space or choose another folder with --out"),
         }
     }
