@@ -382,6 +382,17 @@ fn a_failed_attempt_leaves_no_trace() {
     assert_eq!(last(&recorder.rows), last(&straight.rows));
 }
 
+/// Increments so small that energies are rounding: a residual of 1e-13 is as good as it gets, and is taken.
+#[test]
+fn tiny_increments_converge() {
+    let run = run_scene(&strand("hex8_mean_elongation", FRICTION, ENDS, &bend("bend", 2.5e-9, 10)), None);
+    assert_eq!(run.rows.len(), 10);
+    let large = run_scene(&strand("hex8_mean_elongation", FRICTION, ENDS, &bend("bend", 2.5e-6, 1)), None);
+    let moment = |run: &Run| run.rows.last().unwrap().reaction[0][1].norm();
+    let ratio = 1e3 * moment(&run) / moment(&large);
+    assert!((ratio - 1.0).abs() < 1e-5, "moments of a linear strand: {ratio}");
+}
+
 /// With automatic increments a failure only shortens them: the path is the same to what increments cost in accuracy.
 #[test]
 fn cut_increments_go_on() {

@@ -53,13 +53,13 @@ fn cook(kind: Brick, n: usize) -> f64 {
 
 #[test]
 fn cook_membrane() {
-    let table = [(4, 12.07123), (8, 13.86320), (16, 14.48526), (32, 14.66727)];
+    let table = [(4, 12.07123), (8, 13.86320), (16, 14.48526), (32, 14.66727), (64, 14.71903)];
     for (n, reference) in table {
         let value = cook(Brick::Plain, n);
         println!("plain, n = {n}: {value:.5}, {reference:.5}");
         assert!((value - reference).abs() <= 0.6e-5, "n = {n}: {value} instead of {reference}");
     }
-    let averaged: Vec<f64> = table.iter().map(|(n, _)| cook(Brick::MeanVolume, *n)).collect();
+    let averaged: Vec<f64> = table[..4].iter().map(|(n, _)| cook(Brick::MeanVolume, *n)).collect();
     println!("mean volume: {averaged:?}");
     for (value, (n, plain)) in averaged.iter().zip(table) {
         assert!(*value > plain, "n = {n}: {value} is below {plain}");
@@ -100,9 +100,10 @@ fn cantilever_under_a_tip_force() {
     }
 }
 
-/// Eight nodes with full integration lock: no reason to use them here, but the number is known.
+/// Eight nodes lock: no reason to use them here, but the number is known.
 #[test]
 fn plain_brick_locks_in_bending() {
+    println!("mean volume: {:.4}", cantilever(Brick::MeanVolume, [100, 1, 2], 4.0).z);
     let u = cantilever(Brick::Plain, [100, 1, 2], 4.0);
     println!("plain: {:.4} {:.4}", -u.x, u.z);
     assert!((u.z - 5.74).abs() < 0.02, "deflection {} instead of 5.74", u.z);
@@ -235,31 +236,41 @@ fn straight_isotropic_strand_bends_to_a_half_circle() {
     close("radius of the arc", 0.5 * (least + most), length / PI, 1e-3);
 }
 
-/// St. Venant-Kirchhoff in bending, to the second order in k = curvature x radius: sections that keep their shape give
-/// `M/(E I kappa) = 1 - 0.875 k^2` (extension of the axis and the cubic terms of the fibre stress). The fibre stresses on
-/// the curved axis press the section together and let go of some energy: at most that of the statically admissible
-/// `sigma_yy = E kappa^2 (r^2 - R^2)/2`, which lowers the moment by another `2/3 k^2`.
+/// St. Venant-Kirchhoff in bending, exact to the second order in k = curvature x radius: `M/(E I kappa) = 1 - 3/2 k^2`.
+/// Sections that keep their shape give 7/8 (extension of the axis and the cubic terms of the fibre stress); the fibre
+/// stresses on the curved axis press the section together, and the plane problem of the disc under the body force
+/// `-E kappa^2 y` (cubic displacements, `nu = 0`) lets go of energy that lowers the moment by another 5/8.
 #[test]
-fn moment_of_st_venant_kirchhoff_lies_between_its_bounds() {
+fn moment_of_st_venant_kirchhoff_to_the_second_order() {
     let length = 100.0;
-    let moment = straight_strand_moment(&straight_strand(length, 60), length);
-    let k2 = (PI / length).powi(2);
-    println!("moment {moment:.6} EI pi/L: 1 - {:.3} k^2", (1.0 - moment) / k2);
-    let discretisation = 0.05 * k2;
-    assert!(moment < 1.0 - 0.875 * k2 + discretisation, "moment {moment}");
-    assert!(moment > 1.0 - (0.875 + 2.0 / 3.0) * k2 - discretisation, "moment {moment}");
+    let moment = straight_strand_moment(&straight_strand(length, 160), length);
+    let coefficient = (1.0 - moment) / (PI / length).powi(2);
+    println!("moment {moment:.6} EI pi/L: 1 - {coefficient:.4} k^2");
+    // The rigid ends keep their sections from changing over about a radius.
+    close("coefficient", coefficient, 1.5, 0.03);
 }
 
 // ------------------------------------------------------------------------------------------------------- fibre locking
 
 /// Block 2 x 1 x 0.1 with fibres at 45 degrees in its plane.
 fn fibre_block(kind: Brick, n: usize, k: f64, increments: Increments) -> (Result<f64, FemError>, Recorder) {
+    let options = NewtonOptions { force_tolerance: 1e-11, ..NewtonOptions::default() };
+    fibre_block_with(kind, n, k, increments, options)
+}
+
+fn fibre_block_with(
+    kind: Brick,
+    n: usize,
+    k: f64,
+    increments: Increments,
+    options: NewtonOptions,
+) -> (Result<f64, FemError>, Recorder) {
     let lattice = Lattice::new([2 * n, n, 1], kind.kind());
     let mesh = lattice.mesh(|[x, y, z]| [2.0 * x, y, 0.1 * z]);
     let frame = frame_from_directions(&Vector3::new(1.0, 1.0, 0.0), &Vector3::z()).unwrap();
     let law = FibreNeoHooke::new(1.0, 1.0, k).unwrap();
     let solid = brick(kind, &mesh, &constant_frames(&mesh, frame), law).unwrap();
-    let mut problem = Problem::new(&mesh, solid, Vec::new()).unwrap();
+    let mut problem = Problem::with(&mesh, solid, Vec::new(), options).unwrap();
     let (left, right) = (lattice.face(0, false), lattice.face(0, true));
     let all: Vec<u32> = (0..mesh.point_count() as u32).collect();
     let step = problem
@@ -301,13 +312,31 @@ fn mean_elongation_does_not_lock() {
     close("n = 4", edge_force(Brick::MeanElongation, 4, 100.0), 0.184, 0.01);
 }
 
+/// Compressed fibres buckle in such a block: its tangent is indefinite from the first hundredth of the motion, states
+/// are not unique, and no value is known. What counts: the step is finished, by cutting where plain Newton diverges.
 #[test]
 fn nearly_inextensible_fibres_in_plain_bricks_end_by_cutting_steps() {
     for n in [4, 8] {
-        let (force, recorder) = fibre_block(Brick::Plain, n, 1e4, automatic(1.0));
-        println!("n = {n}: {force:?}, {} increments, {} failures", recorder.rows.len(), recorder.failures.len());
-        assert!(force.unwrap() > 1.0);
+        for line_search in [true, false] {
+            let options = NewtonOptions { force_tolerance: 1e-11, line_search, ..NewtonOptions::default() };
+            let (force, recorder) = fibre_block_with(Brick::Plain, n, 1e4, automatic(1.0), options);
+            let (rows, failures) = (&recorder.rows, recorder.failures.len());
+            println!("n = {n}, line search {line_search}: {force:?}, {} increments, {failures} failures", rows.len());
+            assert!(force.unwrap() > 1.0);
+            let last = &rows[rows.len() - 1].record;
+            assert!(last.fraction == 1.0 && last.residual().is_some_and(|r| r <= 1e-11), "{last:?}");
+            assert!(line_search || failures > 0, "n = {n}: undamped Newton converged at once");
+        }
     }
+}
+
+/// Full integration of 27 nodes locks too, but far less than eight nodes: no claim of 1 % at n = 4, only convergence.
+#[test]
+fn quadratic_brick_locks_little() {
+    let [coarse, fine] = [4, 8].map(|n| edge_force(Brick::Quadratic, n, 100.0));
+    println!("quadratic, k = 100: {coarse:.5} {fine:.5}");
+    assert!(coarse < 0.229, "n = 4 is no better than plain bricks with n = 16: {coarse}");
+    assert!(fine < coarse && fine > 0.18, "{coarse} {fine}");
 }
 
 // ----------------------------------------------------------------------------------- helically fibred cylinder
@@ -417,14 +446,26 @@ fn helically_fibred_cylinder_of_2400_averaging_bricks() {
 
 #[test]
 fn helically_fibred_cylinder_refined() {
-    let worst = cylinder("{ core = 4, rings = 2, layers = 4 }", "hex27", 4.0);
-    assert!(worst < 0.005, "{worst:e}");
+    for (mesh, formulation) in [
+        ("{ core = 4, rings = 2, layers = 4 }", "hex27"),
+        ("{ core = 8, rings = 4, layers = 8 }", "hex8"),
+        ("{ core = 8, rings = 10, layers = 4 }", "hex8_mean_elongation"),
+    ] {
+        let worst = cylinder(mesh, formulation, 4.0);
+        assert!(worst < 0.005, "{formulation}: {worst:e}");
+    }
 }
 
 // ------------------------------------------------------------------------------------ torsion of a bundle with friction
 
 #[test]
 fn torsion_of_a_bundle_with_longitudinal_friction() {
+    torsion("hex27", "{ core = 6, rings = 4, layers = 1 }");
+    torsion("hex8", "{ core = 8, rings = 8, layers = 1 }");
+    torsion("hex8_mean_elongation", "{ core = 8, rings = 8, layers = 1 }");
+}
+
+fn torsion(formulation: &str, mesh: &str) {
     let (length, amplitude) = (2.0_f64, 0.002);
     let angle = (amplitude * length).to_degrees();
     let step = |name: &str, angle: f64, count: usize| {
@@ -439,9 +480,9 @@ fn torsion_of_a_bundle_with_longitudinal_friction() {
 radius = {CYLINDER_RADIUS:?}
 length = {length:?}
 surface_angle = 0.0
-mesh = {{ core = 6, rings = 4, layers = 1 }}
+mesh = {mesh}
 [element]
-formulation = "hex27"
+formulation = "{formulation}"
 [law]
 kind = "bundle"
 K_e = 1000.0
@@ -479,7 +520,9 @@ residual_tolerance = 1e-9
     let dissipation = 8.0 * PI * tau * slid;
     close("closed form of the moment", moment, 0.327_167_42, 1e-7);
     close("closed form of the dissipation", dissipation, 2.226_603_8e-3, 1e-7);
-    println!("largest moment {most:.8} of {moment:.8}, dissipated {cycle:.7e} of {dissipation:.7e} per mm and cycle");
+    println!(
+        "{formulation}: largest moment {most:.8} of {moment:.8}, dissipated {cycle:.7e} of {dissipation:.7e} per mm and cycle"
+    );
     close("largest moment", most, moment, 0.005);
     close("dissipated per cycle", cycle, dissipation, 0.005);
 }

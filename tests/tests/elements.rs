@@ -190,11 +190,16 @@ fn linear_motion(x: &Vector3<f64>) -> Vector3<f64> {
 #[test]
 fn linear_patch() {
     let sigma = Matrix3::from_fn(|i, j| if i == j { 2000.0 } else { 400.0 });
-    for kind in [Brick::Plain, Brick::MeanVolume, Brick::Quadratic] {
-        // So small a motion that the law is linear: the numbers scale.
-        let scale = 1e-7;
-        let law = StVenantKirchhoff::isotropic(1e6, 0.25).unwrap();
-        let (mesh, problem) = patch(kind, law, |x| linear_motion(x) * scale);
+    // So small a motion that the law is linear: the numbers scale.
+    let scale = 1e-7;
+    for kind in Brick::ALL {
+        let motion = |x: &Vector3<f64>| linear_motion(x) * scale;
+        let (mesh, problem) = if kind == Brick::MeanElongation {
+            // E = 1e6, nu = .25: mu = lambda = 4e5, with a fibre that carries nothing.
+            patch(kind, FibreNeoHooke::new(4e5, 4e5, 1e-12).unwrap(), motion)
+        } else {
+            patch(kind, StVenantKirchhoff::isotropic(1e6, 0.25).unwrap(), motion)
+        };
         let mut worst = Worst::default();
         for (node, x) in mesh.points.iter().enumerate() {
             let u = problem.displacement(node as u32) / scale;
@@ -223,9 +228,13 @@ fn finite_patch() {
         0.29786166,
     );
     let energy = 0.14019847012063;
-    for kind in [Brick::Plain, Brick::MeanVolume, Brick::Quadratic] {
-        let (mesh, problem) =
-            patch(kind, CompressibleNeoHooke::new(0.5, 1.2).unwrap(), |x| (f - Matrix3::identity()) * x);
+    for kind in Brick::ALL {
+        let motion = |x: &Vector3<f64>| (f - Matrix3::identity()) * x;
+        let (mesh, problem) = if kind == Brick::MeanElongation {
+            patch(kind, FibreNeoHooke::new(0.5, 1.2, 1e-15).unwrap(), motion)
+        } else {
+            patch(kind, CompressibleNeoHooke::new(0.5, 1.2).unwrap(), motion)
+        };
         let mut worst = Worst::default();
         for (node, x) in mesh.points.iter().enumerate() {
             worst.see("nodes", (problem.displacement(node as u32) + x - f * x).norm());

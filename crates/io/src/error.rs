@@ -242,7 +242,7 @@ pub enum ValueError {
         got: usize,
     },
     /// A value is not finite, or too large for single precision.
-    #[error("{name:?}: value {index} is {value}, which cannot be written")]
+    #[error("{name:?}: value {index} is {value:e}, which cannot be written")]
     NotFinite {
         /// Name of the field or column.
         name: String,

@@ -37,8 +37,8 @@ pub struct IncrementRecord {
     pub outcome: Outcome,
     /// Newton iterations of this attempt.
     pub iterations: usize,
-    /// Relative residual force at its end \[-\].
-    pub residual: f64,
+    /// Relative residual force at its end \[-\]; none when it failed before that was known.
+    pub residual: Option<f64>,
     /// Fraction of the step reached, or tried \[-\].
     pub fraction: f64,
     /// Length of the increment as a fraction of the step \[-\].

@@ -130,7 +130,7 @@ fn numbers() {
     expect(
         "radius = 2.785",
         "radius = -2.785",
-        &["`radius` = -2.785 is out of range: it must be greater than 0", "[mm]"],
+        &["`radius` = -2.785 is out of range: it must be at least 1e-9 and at most 1000000000", "[mm]"],
     );
     expect("surface_angle = 30.0", "surface_angle = 90", &["`surface_angle` = 90", "less than 90", "bad.toml:6:17"]);
     expect("length = 60.0", "length = nan", &["`length` = NaN is out of range: it must be a finite number"]);
@@ -138,12 +138,31 @@ fn numbers() {
     expect("length = 60.0", "length = 1e999", &["bad.toml:5:10"]);
     expect("core = 4", "core = 3", &["a multiple of 2"]);
     expect("core = 4", "core = -4", &["`core` = -4", "at least 2"]);
-    expect("initial = 0.1", "initial = 0", &["`initial` = 0", "greater than 0"]);
+    expect("initial = 0.1", "initial = 0", &["`initial` = 0", "at least 1e-12"]);
     expect("{ initial = 0.1, maximum = 0.2 }", "{ fixed = 0 }", &["`fixed` = 0", "at least 1"]);
     expect("angle = 90.0", "angle = 270.0", &["between -180 and 180 degrees"]);
     expect("tau_l = 1.0", "tau_l = 1.0\nnu = nan", &["`nu` = NaN"]);
     expect("[law]", "[solver]\ncutback = 1.5\n[law]", &["`cutback` = 1.5", "less than 1"]);
     expect("[law]", "[output]\ncompression = 12\n[law]", &["`compression` = 12", "at most 9"]);
+}
+
+/// Nothing absurd gets as far as the mesh: it would end in infinite aspect ratios, overflow or no progress at all.
+#[test]
+fn absurd_numbers() {
+    for value in ["1e300", "1e-300", "0"] {
+        for (key, old) in [("radius", "radius = 2.785"), ("length", "length = 60.0")] {
+            expect(old, &format!("{key} = {value}"), &[&format!("`{key}` = {value} is out of range")]);
+        }
+        expect("surface_angle = 30.0", &format!("pitch = {value}"), &[&format!("`pitch` = {value} is out of range")]);
+    }
+    for count in ["1000000000", "9223372036854775806", "0"] {
+        for (key, old) in [("core", "core = 4"), ("rings", "rings = 2"), ("layers", "rings = 2")] {
+            let wanted =
+                if key == "core" { "at least 2 and at most 1048576" } else { "at least 1 and at most 1048576" };
+            expect(old, &format!("{key} = {count}"), &[&format!("`{key}` = "), wanted, "bad.toml:"]);
+        }
+    }
+    expect("initial = 0.1", "initial = 1e-300", &["`initial` = 1e-300", "at least 1e-12 and at most 1"]);
 }
 
 #[test]

@@ -46,6 +46,34 @@ fn reference_paths_are_reproduced() {
     println!("worst relative error {worst:e}, worst difference quotient {worst_difference:e}");
 }
 
+/// Random paths with kinematic and saturating hardening, pressure, lock-up, large shear and strains of 1e-14.
+#[test]
+fn random_paths_are_reproduced() {
+    let expected = point::load(&reference().with_file_name("law_random.json")).unwrap();
+    let computed = point::compute("law_random.json", &expected, false).unwrap();
+    assert_eq!(computed.paths.len(), 35);
+    let mut worst = 0.0_f64;
+    for (path, reference) in computed.paths.iter().zip(&expected.paths) {
+        for (index, (step, known)) in path.steps.iter().zip(&reference.steps).enumerate() {
+            let mut see = |key: &str, found: &[f64], expected: &[f64]| {
+                // Relative to the largest entry, however small that is.
+                let scale = expected.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+                let error = found.iter().zip(expected).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / scale;
+                assert!(error < 1e-10, "{} step {index} {key}: {error:e}", path.name);
+                worst = worst.max(error);
+            };
+            see("I", &step.I.unwrap(), &known.I.unwrap());
+            see("q", &step.q.unwrap(), &known.q.unwrap());
+            see("W", &[step.W.unwrap()], &[known.W.unwrap()]);
+            see("S_fibre", &step.S_fibre.unwrap(), &known.S_fibre.unwrap());
+            see("S_global", &step.S_global.unwrap(), &known.S_global.unwrap());
+            see("D_fibre", step.D_fibre.unwrap().as_flattened(), known.D_fibre.unwrap().as_flattened());
+            see("state", step.state.as_ref().unwrap(), known.state.as_ref().unwrap());
+        }
+    }
+    println!("worst relative error {worst:e}");
+}
+
 #[test]
 fn layout_and_numbers_survive() {
     let text = std::fs::read_to_string(reference()).unwrap();
@@ -75,6 +103,20 @@ fn other_keys_are_kept_and_the_gradient_keeps_its_digits() {
     assert_eq!(written["paths"][0]["steps"][0]["note"], 1);
     let again: PathFile = serde_json::from_value(written).unwrap();
     assert_eq!(again.paths[0].steps, computed.paths[0].steps);
+}
+
+#[test]
+fn a_parameter_of_another_type_is_told_from_a_missing_one() {
+    let file = |value: &str| {
+        let text = format!(
+            r#"{{"paths": [{{"name": "p", "params": {{"K_e": {value}, "K_ec": 1.0, "K_c": 1.0, "K_t": 1.0, "K_l": 1.0,
+            "friction": 0}}, "steps": [{{"modes": [0.01, 0, 0, 0, 0, 0]}}]}}]}}"#
+        );
+        point::compute("p.json", &serde_json::from_str::<PathFile>(&text).unwrap(), false)
+    };
+    assert!(file("1.0").is_ok());
+    let message = file("\"x\"").unwrap_err().to_string();
+    assert!(message.contains("K_e = \"x\" must be a number") && message.contains("p.json"), "{message}");
 }
 
 const LOOP: &str = r#"

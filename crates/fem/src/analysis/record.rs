@@ -110,10 +110,10 @@ pub struct IncrementRecord {
 }
 
 impl IncrementRecord {
-    /// Last relative residual.
+    /// Last relative residual; none when the attempt failed before its first iterate.
     #[must_use]
-    pub fn residual(&self) -> f64 {
-        self.residuals.last().copied().unwrap_or(0.0)
+    pub fn residual(&self) -> Option<f64> {
+        self.residuals.last().copied()
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Kinematics, NodeRule, Rotation};
 
 /// Derivative of a tied node's position: `dx = du_c + rotation d(omega) + slide d(rho)`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tie {
     first: u32,
     /// `-[R a] T`.

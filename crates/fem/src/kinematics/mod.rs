@@ -169,49 +169,42 @@ impl Kinematics {
 
     /// Displacements of all nodes \[mm\], three per node.
     pub fn displacements(&self, q: &[f64], out: &mut [f64]) {
-        let rotations = self.rotations(q);
-        for (node, rule) in self.rules.iter().enumerate() {
-            let target = &mut out[3 * node..3 * node + 3];
-            match rule {
-                NodeRule::Free { first } => target.copy_from_slice(&q[*first as usize..*first as usize + 3]),
-                NodeRule::Tied { point, slide, .. } => {
-                    let u = self.tied_displacement(node, *point, slide.as_ref(), q, &rotations);
-                    target.copy_from_slice(u.as_slice());
-                }
+        for (target, rule) in out.chunks_exact_mut(3).zip(&self.rules) {
+            if let NodeRule::Free { first } = rule {
+                target.copy_from_slice(&q[*first as usize..*first as usize + 3]);
+            }
+        }
+        for (index, point) in self.points.iter().enumerate() {
+            let (shift, turn) = self.point_motion(index, q);
+            let rotation = Rotation::new(turn);
+            for &node in &point.nodes {
+                let node = node as usize;
+                let slid = self.slid(node, q);
+                let u = shift + rotation.displacement(&(self.positions[node] - point.position + slid)) + slid;
+                out[3 * node..3 * node + 3].copy_from_slice(u.as_slice());
             }
         }
     }
 
-    fn tied_displacement(
-        &self,
-        node: usize,
-        point: u32,
-        slide: Option<&(u32, Vector3<f64>)>,
-        q: &[f64],
-        rotations: &[Rotation],
-    ) -> Vector3<f64> {
-        let point = point as usize;
-        let arm = self.positions[node] - self.points[point].position;
-        let slid = slide.map_or_else(Vector3::zeros, |(rho, direction)| direction * q[*rho as usize]);
-        self.point_motion(point, q).0 + rotations[point].displacement(&(arm + slid)) + slid
-    }
-
-    /// Rotations of the reference points.
-    #[must_use]
-    pub fn rotations(&self, q: &[f64]) -> Vec<Rotation> {
-        (0..self.points.len()).map(|p| Rotation::new(self.point_motion(p, q).1)).collect()
+    /// What a tied node has slid along its direction, before the section turns.
+    fn slid(&self, node: usize, q: &[f64]) -> Vector3<f64> {
+        match &self.rules[node] {
+            NodeRule::Tied { slide: Some((rho, direction)), .. } => direction * q[*rho as usize],
+            _ => Vector3::zeros(),
+        }
     }
 
     /// Derivatives of all tied nodes at `q`, in the order of their ties; free nodes need none.
     pub fn ties(&self, q: &[f64], out: &mut Vec<Tie>) {
-        let rotations = self.rotations(q);
-        out.clear();
-        for (node, rule) in self.rules.iter().enumerate() {
-            if let NodeRule::Tied { point, slide, .. } = rule {
-                let p = &self.points[*point as usize];
-                let arm = self.positions[node] - p.position;
-                let slide = slide.map(|(c, d)| (c, d, q[c as usize]));
-                out.push(Tie::new(p.first, &rotations[*point as usize], &arm, slide));
+        out.resize_with(self.points.iter().map(|p| p.nodes.len()).sum(), Tie::default);
+        for (index, point) in self.points.iter().enumerate() {
+            let rotation = Rotation::new(self.point_motion(index, q).1);
+            for &node in &point.nodes {
+                if let NodeRule::Tied { tie, slide, .. } = &self.rules[node as usize] {
+                    let arm = self.positions[node as usize] - point.position;
+                    let slide = slide.map(|(c, d)| (c, d, q[c as usize]));
+                    out[*tie as usize] = Tie::new(point.first, &rotation, &arm, slide);
+                }
             }
         }
     }
@@ -233,9 +226,9 @@ impl Kinematics {
 
     /// Second-derivative term of the tangent, `sum_i f_i . d2x_i/dq2`, as dense symmetric blocks on lists of coordinates.
     pub fn curvature_blocks(&self, q: &[f64], nodal: &[f64], visit: &mut dyn FnMut(&[u32], &[f64])) {
-        let rotations = self.rotations(q);
         for (index, point) in self.points.iter().enumerate() {
-            self.curvature_of_point(point, &rotations[index], q, nodal, visit);
+            let rotation = Rotation::new(self.point_motion(index, q).1);
+            self.curvature_of_point(point, &rotation, q, nodal, visit);
         }
     }
 
@@ -274,11 +267,7 @@ impl Kinematics {
         for &node in &p.nodes {
             let node = node as usize;
             let f = Vector3::from_column_slice(&nodal[3 * node..3 * node + 3]);
-            let slide = match &self.rules[node] {
-                NodeRule::Tied { slide: Some((rho, direction)), .. } => direction * q[*rho as usize],
-                _ => Vector3::zeros(),
-            };
-            let lever = rotation.rotate(&(self.positions[node] - p.position + slide));
+            let lever = rotation.rotate(&(self.positions[node] - p.position + self.slid(node, q)));
             force += f;
             moment += lever.cross(&f);
         }

@@ -51,12 +51,12 @@ impl Observer for Terminal {
             self.bar.set_position((done * PARTS as f64) as u64);
         }
         self.line(&format!(
-            "{:6}{:6}{:5}{:6}  {:<10.2e}  {:<10.6}  {:<10.3e}  {:<10.6}  {:.3}{outcome}",
+            "{:6}{:6}{:5}{:6}  {:<10}  {:<10.6}  {:<10.3e}  {:<10.6}  {:.3}{outcome}",
             record.step + 1,
             record.increment,
             record.attempt,
             record.iterations,
-            record.residual,
+            record.residual.map_or_else(|| "-".to_owned(), |r| format!("{r:.2e}")),
             record.fraction,
             record.size,
             record.time,

@@ -54,7 +54,7 @@ pub enum ProblemKind {
         allowed: Vec<String>,
     },
     /// A number outside its bounds.
-    #[error("`{key}` = {found} is out of range: it must be {requirement}")]
+    #[error("`{key}` = {} is out of range: it must be {requirement}", super::keywords::number(*found))]
     OutOfRange {
         /// The key.
         key: String,

@@ -106,3 +106,9 @@ pub(super) fn length(low: Option<usize>, high: Option<usize>) -> String {
         (None, None) => "any number of entries".to_owned(),
     }
 }
+
+/// A number as a person would write it: huge and tiny ones with an exponent.
+pub(super) fn number(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-6..1e12).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
+}

@@ -8,7 +8,9 @@ use std::ops::Range;
 
 use serde_json::Value as Json;
 
-use super::keywords::{describe, is_null, join_or, length, property_names, tag_of, tag_value, type_fits, words};
+use super::keywords::{
+    describe, is_null, join_or, length, number, property_names, tag_of, tag_value, type_fits, words,
+};
 use super::{Document, Location, Node, Problem, ProblemKind, Segment, Value};
 
 /// All problems of a document under a schema.
@@ -147,7 +149,7 @@ impl<'a> Shape<'a> {
         if given.iter().all(|(limit, _, ok)| ok(found, *limit)) {
             return;
         }
-        let requirement = given.iter().map(|(limit, text, _)| format!("{text} {limit}")).collect::<Vec<_>>();
+        let requirement = given.iter().map(|(limit, text, _)| format!("{text} {}", number(*limit))).collect::<Vec<_>>();
         let requirement = requirement.join(" and ");
         self.report(place.span(), ProblemKind::OutOfRange { key: place.key(), found, requirement }, about);
     }

@@ -111,8 +111,16 @@ pub enum EntryFault {
         /// The parameter.
         key: &'static str,
     },
+    /// A parameter is not a number.
+    #[error("`params`: {key} = {found} must be a number")]
+    NotANumber {
+        /// The parameter.
+        key: &'static str,
+        /// What the file says.
+        found: String,
+    },
     /// A parameter has an impossible value.
-    #[error("`params`: {key} = {value} must be {allowed}")]
+    #[error("`params`: {key} = {value:e} must be {allowed}")]
     Parameter {
         /// The parameter.
         key: &'static str,

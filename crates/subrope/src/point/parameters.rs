@@ -151,7 +151,7 @@ fn optional(params: &Params, key: &'static str) -> Result<Option<f64>, EntryFaul
     match params.get(key) {
         None => Ok(None),
         Some(Value::Bool(flag)) => Ok(Some(f64::from(u8::from(*flag)))),
-        Some(value) => value.as_f64().map(Some).ok_or(EntryFault::MissingParameter { key }),
+        Some(value) => value.as_f64().map(Some).ok_or_else(|| EntryFault::NotANumber { key, found: value.to_string() }),
     }
 }
 

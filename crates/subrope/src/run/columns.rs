@@ -85,7 +85,7 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
         totals.energy_error(),
         record.iterations as f64,
         cutbacks as f64,
-        record.residual(),
+        record.residual().unwrap_or(0.0),
         // Unknown for an unsymmetric factorisation.
         record.negative_pivots.map_or(-1.0, |n| n as f64),
     ]);

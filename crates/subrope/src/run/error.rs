@@ -86,6 +86,9 @@ impl RunError {
                 _ => None,
             },
             Self::Interrupted { .. } => None,
+            Self::Output(IoError::Value(_)) => {
+                Some("a result is not finite or too large for single precision: check the units of the scene")
+            }
             Self::Output(error) => output_advice(error.system_kind()?),
             Self::Folder { source, .. } | Self::Replace { source, .. } => output_advice(source.kind()),
         }

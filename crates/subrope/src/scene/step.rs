@@ -54,15 +54,15 @@ pub struct Increments {
     pub fixed: Option<usize>,
     /// First increment as a fraction of the step \[-\]; 0.05 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    #[schemars(extend("minimum" = 1e-12, "maximum" = 1))]
     pub initial: Option<f64>,
     /// Smallest increment as a fraction of the step \[-\]; 1e-6 when left out. Below it the run gives up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    #[schemars(extend("minimum" = 1e-12, "maximum" = 1))]
     pub minimum: Option<f64>,
     /// Largest increment as a fraction of the step \[-\]; 0.1 (or `initial`, if larger) when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    #[schemars(extend("minimum" = 1e-12, "maximum" = 1))]
     pub maximum: Option<f64>,
     /// Largest number of increments \[-\]; 1000 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -3,16 +3,19 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Most cells in any direction, as in `subrope_geometry`.
+const MAX_COUNT: usize = 1 << 20;
+
 /// A straight twisted strand along z. Its node sets are `END_A` (lowest z), `END_B` (highest z), `SURFACE_NODES` (also
 /// `LATERAL`), `AXIS` and `ALL`; its surface is `LATERAL`. Give either `surface_angle` or `pitch`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Strand {
     /// Radius of the section \[mm\].
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e9))]
     pub radius: f64,
     /// Length along z \[mm\].
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e9))]
     pub length: f64,
     /// Angle between the rope-yarns at the surface and the axis \[degrees\], from 0 (straight) to below 90.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -20,7 +23,7 @@ pub struct Strand {
     pub surface_angle: Option<f64>,
     /// Lay length: height of one turn of a rope-yarn \[mm\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e9))]
     pub pitch: Option<f64>,
     /// Sense of the helix: "right" (Z lay: rises counter-clockwise when seen from +z) or "left" (S lay).
     #[serde(default)]
@@ -78,13 +81,13 @@ pub enum Origin {
 pub struct StrandMesh {
     /// Cells along each side of the core \[-\], even, so that nodes lie on the axis; the outline has 4 times as many
     /// edges.
-    #[schemars(extend("minimum" = 2, "multipleOf" = 2))]
+    #[schemars(extend("minimum" = 2, "maximum" = MAX_COUNT, "multipleOf" = 2))]
     pub core: usize,
     /// Rings of cells around the core \[-\].
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = MAX_COUNT))]
     pub rings: usize,
     /// Layers along the strand \[-\].
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = MAX_COUNT))]
     pub layers: usize,
     /// Half side of the core as a fraction of the radius \[-\], between 0 and 0.7071.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = std::f64::consts::FRAC_1_SQRT_2))]
