@@ -162,6 +162,7 @@ fn absurd_numbers() {
             expect(old, &format!("{key} = {count}"), &[&format!("`{key}` = "), wanted, "bad.toml:"]);
         }
     }
+    expect("{ initial = 0.1, maximum = 0.2 }", "{ fixed = 10000000000 }", &["at least 1 and at most 1000000"]);
     expect("initial = 0.1", "initial = 1e-300", &["`initial` = 1e-300", "at least 1e-12 and at most 1"]);
 }
 

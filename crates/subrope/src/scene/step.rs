@@ -50,7 +50,7 @@ fn one_second() -> f64 {
 pub struct Increments {
     /// Number of equal increments \[-\]; never cut.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub fixed: Option<usize>,
     /// First increment as a fraction of the step \[-\]; 0.05 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -66,7 +66,7 @@ pub struct Increments {
     pub maximum: Option<f64>,
     /// Largest number of increments \[-\]; 1000 when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub max_count: Option<usize>,
 }
 
