@@ -45,6 +45,7 @@ impl Dense {
                 displacement: &displacement,
                 committed: &self.committed,
                 time_increment: 1.0,
+                time: 1.0,
                 temperature: 293.15,
                 parallel: false,
             },

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of tests fails by panicking")]
 #![allow(clippy::panic, reason = "a helper of tests fails by panicking")]
 
+mod bodies;
 mod bricks;
 mod compare;
 mod dense;
@@ -10,6 +11,7 @@ mod meshes;
 mod problem;
 mod rope;
 
+pub use bodies::{Bodies, Body, rigid};
 pub use bricks::{Brick, brick, constant_frames, fields_of};
 pub use compare::{Worst, close, matrix_close, relative, scientific};
 pub use dense::Dense;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use subrope_geometry::{CellKind, Hex8, Hex27, Hexahedron, Mesh};
+use subrope_geometry::{CellKind, Face, Hex8, Hex27, Hexahedron, Mesh};
 
 /// A structured block of `cells` bricks along three parameters that run from 0 to 1.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +74,17 @@ impl Lattice {
         let wanted = if end { n[axis] - 1 } else { 0 };
         let all = triples([n[2], n[1], n[0]]).map(|(k, j, i)| [i, j, k]);
         all.filter(|place| place[axis] == wanted).map(|place| self.node(place)).collect()
+    }
+
+    /// Faces of the cells on such a plane.
+    #[must_use]
+    pub fn face_cells(self, axis: usize, end: bool) -> Vec<Face> {
+        const FACES: [[u8; 2]; 3] = [[5, 3], [2, 4], [0, 1]];
+        let [cx, cy, cz] = self.cells;
+        let wanted = if end { self.cells[axis] - 1 } else { 0 };
+        let all = triples([cz, cy, cx]).map(|(k, j, i)| [i, j, k]).filter(|place| place[axis] == wanted);
+        let face = FACES[axis][usize::from(end)];
+        all.map(|[i, j, k]| Face { cell: ((k * cy + j) * cx + i) as u32, face }).collect()
     }
 
     /// Shares of a uniform load on the nodes of a face of constant parameter `axis`, in the order of [`Self::face`]:

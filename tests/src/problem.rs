@@ -38,8 +38,21 @@ impl Problem {
         sections: Vec<Section>,
         options: NewtonOptions,
     ) -> Result<Self, FemError> {
+        Self::of(mesh, vec![solid], sections, options)
+    }
+
+    /// A model of several contributions: bricks, contacts.
+    ///
+    /// # Errors
+    /// As [`Kinematics::new`].
+    pub fn of(
+        mesh: &Mesh,
+        contributions: Vec<Box<dyn Contribution>>,
+        sections: Vec<Section>,
+        options: NewtonOptions,
+    ) -> Result<Self, FemError> {
         let kinematics = Kinematics::new(mesh.points.clone(), sections)?;
-        let model = Model { kinematics, contributions: vec![solid] };
+        let model = Model { kinematics, contributions };
         Ok(Self { analysis: Analysis::new(model, options, SolverOptions::default(), 1) })
     }
 
@@ -125,6 +138,25 @@ impl StepBuilder<'_> {
     #[must_use]
     pub fn hold(self, index: usize, except: &[u32]) -> Self {
         (0..6).filter(|k| !except.contains(k)).fold(self, |step, k| step.point(index, k, 0.0))
+    }
+
+    /// Prescribes component `k` of a reference point as a function of the fraction of the step.
+    #[must_use]
+    pub fn point_path(mut self, index: usize, k: u32, path: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        let coordinate = self.kinematics.points()[index].first + k;
+        self.step.prescriptions.retain(|p| p.coordinate != coordinate);
+        self.step.prescriptions.push(Prescription { coordinate, path: Arc::new(move |fraction, _| path(fraction)) });
+        self
+    }
+
+    /// Loads component `k` of a reference point with a force or moment that goes linearly from one value to another.
+    #[must_use]
+    pub fn load(mut self, index: usize, k: u32, from: f64, to: f64) -> Self {
+        let coordinate = self.kinematics.points()[index].first + k;
+        let load = Load { nodal: Vec::new(), coordinates: vec![(coordinate, 1.0)] };
+        let path = Arc::new(move |fraction: f64, _: f64| from + (to - from) * fraction);
+        self.step.loads.push(StepLoad { load, path });
+        self
     }
 
     /// Loads nodes with shares of a dead force that grows linearly over the step.

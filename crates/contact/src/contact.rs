@@ -33,6 +33,9 @@ pub struct Contact {
     buffers: Vec<PairBuffer>,
 }
 
+/// Secondary and primary patches.
+type PairList = Vec<(u32, u32)>;
+
 /// Pairs of patches that may touch: the elements of the contribution.
 #[derive(Default)]
 struct Pairs {
@@ -133,6 +136,15 @@ impl Contact {
         })
     }
 
+    /// Where all integration points are at nodal displacements, patch by patch \[mm\].
+    pub fn places<'a>(&'a self, displacement: &'a [f64]) -> impl Iterator<Item = Vector3<f64>> + 'a {
+        let per_patch = self.per_patch;
+        self.points
+            .iter()
+            .enumerate()
+            .map(move |(i, p)| combine(&p.own, &self.secondary.gather(i / per_patch, &self.positions, displacement)))
+    }
+
     /// Sums and extremes of the committed state.
     #[must_use]
     pub fn report(&self) -> ContactReport {
@@ -191,7 +203,7 @@ impl Contact {
     }
 
     /// Pairs around all feet, sorted: those needed now, and those that may soon be.
-    fn candidates(&self, feet: &[(u32, Place, f64)]) -> (Vec<(u32, u32)>, Vec<(u32, u32)>) {
+    fn candidates(&self, feet: &[(u32, Place, f64)]) -> (PairList, PairList) {
         let (mut needed, mut wide) = (Vec::new(), Vec::new());
         for &(patch, place, gap) in feet {
             if gap < 0.5 * self.options.reach {
@@ -211,7 +223,8 @@ impl Contact {
                 if let Some((next, at)) = self.primary.cross(place.patch as usize, edge, place.xi) {
                     wide.push((patch, next as u32));
                     for turn in [(edge + 1) % 4, (edge + 3) % 4] {
-                        let diagonal = if close(turn) { corner(&self.primary, place, edge, turn, at, next) } else { None };
+                        let diagonal =
+                            if close(turn) { corner(&self.primary, place, edge, turn, at, next) } else { None };
                         wide.extend(diagonal.map(|d| (patch, d)));
                     }
                 }
@@ -241,7 +254,13 @@ fn corner(surface: &Surface, place: Place, edge: u8, turn: u8, at: [f64; 2], nex
     }
     let (_, moved) = surface.cross(place.patch as usize, edge, pushed)?;
     let (dx, dy) = (moved[0] - at[0], moved[1] - at[1]);
-    let side = if dx.abs() > dy.abs() { if dx > 0.0 { 1 } else { 3 } } else if dy > 0.0 { 2 } else { 0 };
+    let side = if dx.abs() > dy.abs() {
+        if dx > 0.0 { 1 } else { 3 }
+    } else if dy > 0.0 {
+        2
+    } else {
+        0
+    };
     surface.cross(next, side, at).map(|(d, _)| d as u32)
 }
 

@@ -69,7 +69,9 @@ pub enum ContactError {
         rounds: usize,
     },
     /// A foot that is not unique: the point is as far away as the surface is curved.
-    #[error("contact {name}: a point {gap:.3e} mm from a surface has no unique closest point there: shorten the increment")]
+    #[error(
+        "contact {name}: a point {gap:.3e} mm from a surface has no unique closest point there: shorten the increment"
+    )]
     NoFoot {
         /// The pair.
         name: String,

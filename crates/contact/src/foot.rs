@@ -169,7 +169,12 @@ fn mirrored(posture: &Posture<'_>, patch: usize, edge: u8, xi: [f64; 2]) -> Opti
 }
 
 /// Projection on the continued patch.
-fn unbounded(posture: &Posture<'_>, x: &Vector3<f64>, mut at: Place, nodal: &[Vector3<f64>; PATCH_NODES]) -> Option<Foot> {
+fn unbounded(
+    posture: &Posture<'_>,
+    x: &Vector3<f64>,
+    mut at: Place,
+    nodal: &[Vector3<f64>; PATCH_NODES],
+) -> Option<Foot> {
     let kind = posture.surface.kind(at.patch as usize);
     for _ in 0..LIMIT {
         let local = Local::new(kind.shape(at.xi), nodal);

@@ -142,13 +142,7 @@ fn add_normal(foot: &Foot, (p, slope): (f64, f64), v: &Variations, out: &mut Poi
     Some(())
 }
 
-fn add_friction(
-    foot: &Foot,
-    friction: &Friction,
-    third: &[Vector3<f64>; 4],
-    v: &Variations,
-    out: &mut PointTerms,
-) {
+fn add_friction(foot: &Foot, friction: &Friction, third: &[Vector3<f64>; 4], v: &Variations, out: &mut PointTerms) {
     let t = &friction.traction;
     for i in 0..2 {
         add(&mut out.force, t[i], &v.place[i]);

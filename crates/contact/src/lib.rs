@@ -26,5 +26,5 @@ mod surface;
 pub use contact::{Contact, ContactReport};
 pub use error::ContactError;
 pub use options::{ContactOptions, FrictionTangent, Method, default_penalty};
-pub use point::PointRecord;
+pub use point::{History, PointRecord};
 pub use surface::{Smoothing, Surface};

@@ -77,7 +77,8 @@ impl ContactOptions {
     /// # Errors
     /// [`ContactError::Option`].
     pub fn validate(&self) -> Result<(), ContactError> {
-        let positive = [("penalty", self.penalty), ("tangential penalty", self.tangential_penalty), ("reach", self.reach)];
+        let positive =
+            [("penalty", self.penalty), ("tangential penalty", self.tangential_penalty), ("reach", self.reach)];
         for (option, value) in positive {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(ContactError::Option { option, range: "positive and finite", value });
@@ -91,7 +92,11 @@ impl ContactOptions {
         if let Method::Augmented { penetration, .. } = self.method
             && !(penetration > 0.0 && penetration.is_finite())
         {
-            return Err(ContactError::Option { option: "penetration", range: "positive and finite", value: penetration });
+            return Err(ContactError::Option {
+                option: "penetration",
+                range: "positive and finite",
+                value: penetration,
+            });
         }
         match self.points.iter().find(|n| !(1..=32).contains(*n)) {
             Some(&n) => Err(ContactError::Option { option: "points", range: "between 1 and 32", value: n as f64 }),

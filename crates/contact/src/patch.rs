@@ -204,8 +204,8 @@ mod tests {
                 for (k, (up, down)) in steps.iter().enumerate() {
                     let slope = |u: f64, d: f64| (u - d) / (2.0 * h);
                     assert!((slope(up.value[a], down.value[a]) - shape.first[k][a]).abs() < 1e-9);
-                    for m in 0..2 {
-                        let second = shape.second[SECOND[k][m]][a];
+                    for (m, &at) in SECOND[k].iter().enumerate() {
+                        let second = shape.second[at][a];
                         assert!((slope(up.first[m][a], down.first[m][a]) - second).abs() < 1e-9, "{kind:?}");
                     }
                     for m in 0..3 {

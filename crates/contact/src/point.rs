@@ -137,17 +137,10 @@ impl Point {
         (Some(Touch { pressure, friction }), energies)
     }
 
-    fn slide(
-        &self,
-        foot: &Foot,
-        committed: &Posture<'_>,
-        options: &ContactOptions,
-        pressure: (f64, f64),
-    ) -> Friction {
+    fn slide(&self, foot: &Foot, committed: &Posture<'_>, options: &ContactOptions, pressure: (f64, f64)) -> Friction {
         let patch = foot.place.patch as usize;
         let local = Local::new(foot.local.shape.clone(), &committed.gather(patch));
-        let mut slip =
-            Slip { local: &local, way: Vector3::zeros(), elastic: Vector3::zeros(), share: (0.0, 0.0) };
+        let mut slip = Slip { local: &local, way: Vector3::zeros(), elastic: Vector3::zeros(), share: (0.0, 0.0) };
         if let Some(place) = &self.old.place {
             let before = committed.surface.shape(place.patch as usize, place.xi);
             let before = Local::new(before, &committed.gather(place.patch as usize));

@@ -26,10 +26,13 @@ pub struct Surface {
     nodes: Vec<u32>,
     starts: Vec<u32>,
     /// Patch and edge beyond every edge.
-    neighbours: Vec<[Option<(u32, u8)>; 4]>,
+    neighbours: Vec<Beyond>,
     /// The face of the mesh that every patch belongs to.
     faces: Vec<u32>,
 }
+
+/// Patch and edge beyond each of the four edges of a patch.
+type Beyond = [Option<(u32, u8)>; 4];
 
 /// Corners of a patch: edge `e` runs from corner `e` to the next.
 type Quad = [u32; 4];
@@ -99,7 +102,7 @@ impl Surface {
         surface
     }
 
-    fn empty(neighbours: Vec<[Option<(u32, u8)>; 4]>) -> Self {
+    fn empty(neighbours: Vec<Beyond>) -> Self {
         Self { kinds: Vec::new(), nodes: Vec::new(), starts: vec![0], neighbours, faces: Vec::new() }
     }
 
@@ -204,7 +207,7 @@ fn quarters(lists: &[Vec<u32>]) -> Vec<(Quad, u32)> {
 }
 
 /// Patch and edge beyond every edge.
-fn neighbours(quads: &[Quad]) -> Result<Vec<[Option<(u32, u8)>; 4]>, ContactError> {
+fn neighbours(quads: &[Quad]) -> Result<Vec<Beyond>, ContactError> {
     let mut edges: HashMap<(u32, u32), (u32, u8)> = HashMap::with_capacity(4 * quads.len());
     for (quad, patch) in quads.iter().zip(0_u32..) {
         for e in 0..4_u8 {
@@ -226,7 +229,7 @@ fn edge_of(quad: &Quad, e: u8) -> (u32, u32) {
 }
 
 /// Faces at every node, and whether it lies at the edge of the surface.
-fn valences(quads: &[Quad], neighbours: &[[Option<(u32, u8)>; 4]]) -> HashMap<u32, (u32, bool)> {
+fn valences(quads: &[Quad], neighbours: &[Beyond]) -> HashMap<u32, (u32, bool)> {
     let mut out: HashMap<u32, (u32, bool)> = HashMap::new();
     for (quad, beyond) in quads.iter().zip(neighbours) {
         for e in 0..4 {
@@ -248,7 +251,7 @@ type Combination = Vec<(u32, f64)>;
 fn control_grid(
     patch: usize,
     quads: &[Quad],
-    neighbours: &[[Option<(u32, u8)>; 4]],
+    neighbours: &[Beyond],
     valence: &HashMap<u32, (u32, bool)>,
 ) -> Result<Vec<Combination>, ContactError> {
     let quad = &quads[patch];
@@ -294,7 +297,8 @@ fn outward([i, j]: [usize; 2], edge: usize) -> [usize; 2] {
     }
 }
 
-/// Missing lines of control points: twice the nearest less the next, first across, then along.
+/// Missing lines of control points: twice the nearest less the next, across the edge that has nothing beyond it. A corner
+/// of which one line is there continues that line; where both are missing the order does not matter.
 fn continue_linearly(grid: &mut [Option<Combination>]) {
     let fill = |grid: &mut [Option<Combination>], at: usize, near: usize, far: usize| {
         if grid[at].is_none()
@@ -304,15 +308,18 @@ fn continue_linearly(grid: &mut [Option<Combination>]) {
             grid[at] = Some(scaled(near, 2.0).chain(scaled(far, -1.0)).collect());
         }
     };
-    for k in 0..4 {
-        fill(grid, 4 * k, 4 * k + 1, 4 * k + 2);
-        fill(grid, 4 * k + 3, 4 * k + 2, 4 * k + 1);
-        fill(grid, k, k + 4, k + 8);
-        fill(grid, k + 12, k + 8, k + 4);
+    // Lines that the faces beyond them have made: first and last row.
+    for row in [0, 12] {
+        fill(grid, row, row + 1, row + 2);
+        fill(grid, row + 3, row + 2, row + 1);
     }
-    for k in 0..4 {
-        fill(grid, 4 * k, 4 * k + 1, 4 * k + 2);
-        fill(grid, 4 * k + 3, 4 * k + 2, 4 * k + 1);
+    for row in [4, 8] {
+        fill(grid, row, row + 1, row + 2);
+        fill(grid, row + 3, row + 2, row + 1);
+    }
+    for column in 0..4 {
+        fill(grid, column, column + 4, column + 8);
+        fill(grid, column + 12, column + 8, column + 4);
     }
 }
 
@@ -334,4 +341,49 @@ fn stencil(grid: &[Combination]) -> (PatchKind, Vec<u32>) {
     }
     let count = nodes.len();
     (PatchKind::Spline(Some(Box::new(Stencil { weights, nodes: count }))), nodes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A spline through a lattice of control points reproduces linear functions in both directions, whatever edges the
+    /// patch has; curved lines of nodes are followed up to the edge across them.
+    #[test]
+    fn edges_continue_linearly_across_only() {
+        for cells in [[4, 1], [1, 4], [3, 2], [2, 3], [3, 3]] {
+            let node = |i: usize, j: usize| (j * (cells[0] + 1) + i) as u32;
+            let mut quads = Vec::new();
+            for j in 0..cells[1] {
+                for i in 0..cells[0] {
+                    quads.push(([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)], quads.len() as u32));
+                }
+            }
+            let surface = Surface::spline(&quads).unwrap_or_else(|e| unreachable!("{e}"));
+            let curve = |x: f64, y: f64| Vector3::new(x, y, x * x + 3.0 * y * y);
+            let positions: Vec<Vector3<f64>> =
+                (0..=cells[1]).flat_map(|j| (0..=cells[0]).map(move |i| curve(i as f64, j as f64))).collect();
+            let rest = vec![0.0; 3 * positions.len()];
+            for patch in 0..surface.patch_count() {
+                let (i, j) = (patch % cells[0], patch / cells[0]);
+                let nodal = surface.gather(patch, &positions, &rest);
+                for xi in [[-0.7, -0.4], [-0.7, 0.4], [0.7, -0.4], [0.7, 0.4]] {
+                    let shape = surface.shape(patch, xi);
+                    let x = shape.combine(&shape.value, &nodal);
+                    let at = [i as f64 + 0.5 * (xi[0] + 1.0), j as f64 + 0.5 * (xi[1] + 1.0)];
+                    assert!((x.x - at[0]).abs() < 1e-13 && (x.y - at[1]).abs() < 1e-13);
+                    // x^2 of a uniform spline is x^2 + 1/3 inside; the second derivative falls to zero at an edge.
+                    let second = |v: f64, n: usize, height: f64| {
+                        let (ends, t) = ([v < 1.0, v > n as f64 - 1.0], v.fract());
+                        let inner = v * v + 1.0 / 3.0;
+                        let left = if ends[0] { (1.0 - t).powi(3) / 6.0 * 2.0 } else { 0.0 };
+                        let right = if ends[1] { t.powi(3) / 6.0 * 2.0 } else { 0.0 };
+                        height * (inner - left - right)
+                    };
+                    let exact = second(at[0], cells[0], 1.0) + second(at[1], cells[1], 3.0);
+                    assert!((x.z - exact).abs() < 1e-12, "{cells:?} {patch} {xi:?}: {} {exact}", x.z);
+                }
+            }
+        }
+    }
 }

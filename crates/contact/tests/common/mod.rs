@@ -38,7 +38,8 @@ pub fn join(first: &Mesh, second: &Mesh) -> Mesh {
 
 /// Two equal straight strands of radius 1 that cross at an angle \[rad\] with their smooth surfaces `gap` apart.
 pub fn crossed(angle: f64, gap: f64, kind: CellKind) -> Mesh {
-    let strand = Strand { radius: 1.0, length: 4.0, layers: 8, kind, origin: StrandOrigin::Middle, ..Strand::default() };
+    let strand =
+        Strand { radius: 1.0, length: 4.0, layers: 8, kind, origin: StrandOrigin::Middle, ..Strand::default() };
     let first = strand.mesh().expect("a mesh");
     let mut second = first.clone();
     let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), angle);
@@ -102,16 +103,9 @@ pub fn evaluate(
 ) -> Result<(Vec<f64>, Vec<f64>, Energies), FemError> {
     let nodes = (0..contact.element_count()).map(|e| contact.element_nodes(e).to_vec()).collect();
     let n = displacement.len();
-    let mut keep =
-        Keep { force: vec![0.0; n], product: vec![0.0; n], direction: direction.to_vec(), nodes };
-    let configuration = Configuration {
-        displacement,
-        committed,
-        time_increment: 1.0,
-        time: 1.0,
-        temperature: 293.15,
-        parallel: false,
-    };
+    let mut keep = Keep { force: vec![0.0; n], product: vec![0.0; n], direction: direction.to_vec(), nodes };
+    let configuration =
+        Configuration { displacement, committed, time_increment: 1.0, time: 1.0, temperature: 293.15, parallel: false };
     let energies = contact.assemble(&configuration, Request::Tangent, &mut keep)?;
     Ok((keep.force, keep.product, energies))
 }

@@ -37,6 +37,8 @@ pub struct Analysis {
     pub(super) released: Vec<(u32, f64)>,
     /// Largest reference of a converged increment.
     pub(super) largest_reference: f64,
+    /// Norm of diagonal stiffness times displacement at the last tangent \[N\].
+    pub(super) stiffness_scale: f64,
     /// Coordinates at the start of the step.
     pub(super) step_start: Vec<f64>,
     /// Change of the coordinates over the last increment and its length.
@@ -79,6 +81,7 @@ impl Analysis {
             q: vec![0.0; coordinates],
             released: Vec::new(),
             largest_reference: 0.0,
+            stiffness_scale: 0.0,
             step_start: vec![0.0; coordinates],
             last_change: vec![0.0; coordinates],
             last_length: 0.0,

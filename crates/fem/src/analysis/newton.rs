@@ -17,7 +17,7 @@ pub struct Attempt {
     pub last_resort: bool,
 }
 
-/// The scale of rounding in the residual, over the norm of all element forces.
+/// Rounding of the residual, over the norm of all element forces, or of stiffness times displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Most new searches for touching surfaces in one attempt.
@@ -77,7 +77,9 @@ impl Analysis {
             let tolerance = self.options.force_tolerance;
             let relative = relative_residual(&work.base);
             record.residuals.push(relative);
-            if relative <= tolerance && energy <= self.options.energy_tolerance * largest_energy {
+            // Where the residual is nothing but rounding, so is the energy.
+            let settled = relative == 0.0 || energy <= self.options.energy_tolerance * largest_energy;
+            if relative <= tolerance && settled {
                 if !self.review()? {
                     return Ok(());
                 }
@@ -219,6 +221,7 @@ impl Analysis {
         iterate.residual.iter_mut().zip(&target.coordinates).for_each(|(r, f)| *r -= f);
         iterate.energies = assembled.energies;
         iterate.potential = assembled.energies.potential - work - point_work;
+        self.stiffness_scale = assembled.stiffness_scale.unwrap_or(self.stiffness_scale);
         self.measure(iterate, target, assembled.force_scale);
         Ok(())
     }
@@ -235,7 +238,7 @@ impl Analysis {
         iterate.norm = free.sqrt();
         iterate.reference =
             held.sqrt().max(loads.sqrt()).max(SMALL_REACTION * scale).max(REST * self.largest_reference);
-        if iterate.norm <= ROUNDING * scale {
+        if iterate.norm <= ROUNDING * scale.max(self.stiffness_scale) {
             iterate.norm = 0.0;
         }
     }

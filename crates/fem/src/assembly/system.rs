@@ -36,8 +36,11 @@ pub struct Jump<'a> {
 pub struct Assembled {
     /// Energies of all contributions.
     pub energies: Energies,
-    /// Norm of all element forces \[N\]: the scale of rounding.
+    /// Norm of all element forces \[N\].
     pub force_scale: f64,
+    /// Norm of the products of diagonal stiffness and displacement \[N\], with the tangent only: what the rounding of
+    /// forces is in proportion to. A body that moves far without strain has no forces, yet these roundings.
+    pub stiffness_scale: Option<f64>,
 }
 
 impl System {
@@ -114,7 +117,7 @@ impl System {
             self.values.fill(0.0);
         }
         let mut out = Assembled::default();
-        let mut scale = 0.0;
+        let (mut scale, mut stiffness_scale) = (0.0, 0.0);
         let symmetric = self.is_symmetric();
         for ((contribution, map), nodes) in contributions.iter_mut().zip(&mut self.maps).zip(&self.nodes) {
             let mut sink = Assembler {
@@ -127,15 +130,19 @@ impl System {
                 symmetric,
                 own_symmetry: contribution.is_symmetric(),
                 jump: at.jump,
+                displacement: at.configuration.displacement,
                 nodal: &mut self.nodal,
                 values: &mut self.values,
                 reduction: &mut self.reduction,
                 scale: 0.0,
+                stiffness_scale: 0.0,
             };
             out.energies += contribution.assemble(&at.configuration, at.request, &mut sink)?;
             scale += sink.scale;
+            stiffness_scale += sink.stiffness_scale;
         }
         out.force_scale = scale.sqrt();
+        out.stiffness_scale = (at.request == Request::Tangent).then_some(stiffness_scale.sqrt());
         self.finish(kinematics, at, residual);
         if residual.iter().all(|v| v.is_finite()) { Ok(out) } else { Err(FemError::NonFiniteResidual) }
     }
@@ -257,10 +264,12 @@ struct Assembler<'a> {
     symmetric: bool,
     own_symmetry: bool,
     jump: Option<Jump<'a>>,
+    displacement: &'a [f64],
     nodal: &'a mut [f64],
     values: &'a mut [f64],
     reduction: &'a mut Reduction,
     scale: f64,
+    stiffness_scale: f64,
 }
 
 impl Sink for Assembler<'_> {
@@ -274,6 +283,12 @@ impl Sink for Assembler<'_> {
             }
         }
         let Some(matrix) = stiffness else { return };
+        for k in 0..3 {
+            for (a, &node) in nodes.iter().enumerate() {
+                let product = matrix[((k * n + a) * 3 + k) * n + a] * self.displacement[3 * node as usize + k];
+                self.stiffness_scale += product * product;
+            }
+        }
         if let Some(jump) = self.jump {
             self.add_jump(nodes, matrix, jump.displacement);
         }
