@@ -144,13 +144,37 @@ fn add_normal(foot: &Foot, (p, slope): (f64, f64), v: &Variations, out: &mut Poi
 
 fn add_friction(foot: &Foot, friction: &Friction, third: &[Vector3<f64>; 4], v: &Variations, out: &mut PointTerms) {
     let t = &friction.traction;
+    let stretch = metric_changes(&foot.local, v);
     for i in 0..2 {
         add(&mut out.force, t[i], &v.place[i]);
         let mut change = combine([friction.by_place[(i, 0)], friction.by_place[(i, 1)]], &v.place);
         add(&mut change, friction.by_gap[i], &v.gap);
+        for (j, row) in stretch.iter().enumerate() {
+            for (k, form) in row.iter().enumerate() {
+                add(&mut change, friction.by_metric[i][(j, k)], form);
+            }
+        }
         out.outer(1.0, &v.place[i], &change);
     }
     add_second_variation(foot, &(v.inverse * t), third, v, out);
+}
+
+/// `dm_jk = da_j . a_k + a_j . da_k` at the moving foot.
+fn metric_changes(local: &Local, v: &Variations) -> [[Form; 2]; 2] {
+    let a = &local.tangents;
+    let one = |j: usize, k: usize| {
+        // da_j . a_k
+        let mut out = form(1 + j, &a[k]);
+        let bent = [0, 1].map(|i| local.second[SECOND[j][i]].dot(&a[k]));
+        add(&mut out, 1.0, &combine(bent, &v.place));
+        out
+    };
+    let both = |j, k| {
+        let mut out = one(j, k);
+        add(&mut out, 1.0, &one(k, j));
+        out
+    };
+    [[both(0, 0), both(0, 1)], [both(1, 0), both(1, 1)]]
 }
 
 /// `tau_i H_ij d2xi_j`, from the second variation of `r . a_i = 0`.

@@ -29,12 +29,14 @@ pub struct Slip<'a> {
 /// Friction of a point and its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// Covariant traction `t_i = t . A_i`.
+    /// Covariant traction `t_i = t . a_i`.
     pub traction: Vector2<f64>,
-    /// `dt_i/dxi_j`.
+    /// `dt_i/dxi_j` through the way.
     pub by_place: Matrix2<f64>,
     /// `dt_i/dg`.
     pub by_gap: Vector2<f64>,
+    /// `dt_i/dm_jk`, the change by the metric of the current configuration; one matrix per component.
+    pub by_metric: [Matrix2<f64>; 2],
     /// Magnitude of the traction \[MPa\].
     pub magnitude: f64,
     /// Elastic slip left, contravariant.
@@ -45,53 +47,76 @@ pub struct Friction {
     pub slipped: f64,
 }
 
-/// Coulomb's law with an elastic slip: trial `T_i = eps_t A_i . (s_e + share way)`; it sticks while `|T| <= mu p`, else
-/// `t = mu p T/|T|`. Norms by the metric of the committed configuration.
+/// Coulomb's law with an elastic slip. In the committed configuration the trial slip is `s = s_e + share way`, with
+/// components `s^i`; carried to the current one its traction is `T_i = eps_t m_ij s^j` with the current metric `m`. It
+/// sticks while `|T| <= mu p`, else `t = mu p T/|T|`: the traction is `mu p` in the current configuration, and a rigid motion
+/// after any stretch leaves it as it is.
 ///
 /// Closed-form return; the derivatives are those of this update.
 #[must_use]
-pub fn friction(slip: &Slip<'_>, penalty: f64, coefficient: f64, (p, slope): (f64, f64)) -> Friction {
-    let a = &slip.local.tangents;
-    let (share, share_slope) = slip.share;
-    let total = slip.elastic + slip.way * share;
-    let trial = Vector2::new(a[0].dot(&total), a[1].dot(&total)) * penalty;
-    let by_way = Vector2::new(a[0].dot(&slip.way), a[1].dot(&slip.way)) * (penalty * share_slope);
-    let metric = slip.local.metric();
-    let trial_slope =
-        Matrix2::from_fn(|i, j| penalty * (total.dot(&slip.local.second[SECOND[i][j]]) + share * metric[(i, j)]));
-    let dual = metric.try_inverse().unwrap_or_else(Matrix2::zeros);
-    let raised = dual * trial;
-    let norm = trial.dot(&raised).max(0.0).sqrt();
+pub fn friction(
+    slip: &Slip<'_>,
+    metric: &Matrix2<f64>,
+    penalty: f64,
+    coefficient: f64,
+    (p, slope): (f64, f64),
+) -> Friction {
+    let Trial { slip: s, by_place, by_gap } = Trial::new(slip);
+    let trial = metric * s * penalty;
+    let norm = (penalty * trial.dot(&s)).max(0.0).sqrt();
     let limit = coefficient * p;
-    if norm <= limit {
-        return Friction {
-            traction: trial,
-            by_place: trial_slope,
-            by_gap: by_way,
-            magnitude: norm,
-            elastic: raised / penalty,
-            stored: 0.5 * norm * norm / penalty,
-            slipped: 0.0,
-        };
-    }
-    let direction = trial / norm;
-    // d|T|/dxi_k: the metric changes with the place too.
-    let metric_change = |k: usize| -> f64 {
-        let change = |i: usize, j: usize| {
-            slip.local.second[SECOND[i][k]].dot(&a[j]) + a[i].dot(&slip.local.second[SECOND[j][k]])
-        };
-        (0..2).flat_map(|i| (0..2).map(move |j| (i, j))).map(|(i, j)| raised[i] * raised[j] * change(i, j)).sum()
+    let sticks = norm <= limit;
+    let (scale, magnitude) = if sticks { (1.0, norm) } else { (limit / norm, limit) };
+    // Through the direction only once it slips: the part along the traction is taken out.
+    let turn =
+        |change: Vector2<f64>, growth: f64| if sticks { change } else { (change - trial * (growth / norm)) * scale };
+    let through = |ds: Vector2<f64>| turn(metric * ds * penalty, penalty * trial.dot(&ds) / norm);
+    let columns = [0, 1].map(|k| through(by_place.column(k).into_owned()));
+    let pressing = if sticks { Vector2::zeros() } else { trial * (coefficient * slope / norm) };
+    let by_metric = |j: usize, k: usize| {
+        let mut change = Vector2::zeros();
+        change[j] = penalty * s[k];
+        turn(change, 0.5 * penalty * penalty * s[j] * s[k] / norm)
     };
-    let norm_slope = Vector2::from_fn(|k, _| (raised.dot(&trial_slope.column(k)) - 0.5 * metric_change(k)) / norm);
-    let norm_by_gap = raised.dot(&by_way) / norm;
-    let scale = limit / norm;
+    let entries = [[by_metric(0, 0), by_metric(0, 1)], [by_metric(1, 0), by_metric(1, 1)]];
     Friction {
-        traction: direction * limit,
-        by_place: (trial_slope - direction * norm_slope.transpose()) * scale,
-        by_gap: direction * (coefficient * slope) + (by_way - direction * norm_by_gap) * scale,
-        magnitude: limit,
-        elastic: raised * (scale / penalty),
-        stored: 0.5 * limit * limit / penalty,
-        slipped: (norm - limit) / penalty,
+        traction: trial * scale,
+        by_place: Matrix2::from_columns(&columns),
+        by_gap: through(by_gap) + pressing,
+        by_metric: [0, 1].map(|i| Matrix2::from_fn(|j, k| entries[j][k][i])),
+        magnitude,
+        elastic: s * scale,
+        stored: 0.5 * magnitude * magnitude / penalty,
+        slipped: (norm - magnitude) / penalty,
+    }
+}
+
+/// Components of the trial slip and their derivatives by place and gap.
+struct Trial {
+    slip: Vector2<f64>,
+    by_place: Matrix2<f64>,
+    by_gap: Vector2<f64>,
+}
+
+impl Trial {
+    /// From `M_ij s^j = A_i . (s_e + share way)`, all in the committed configuration.
+    fn new(slip: &Slip<'_>) -> Self {
+        let (a, second) = (&slip.local.tangents, &slip.local.second);
+        let (share, share_slope) = slip.share;
+        let total = slip.elastic + slip.way * share;
+        let metric = slip.local.metric();
+        let dual = metric.try_inverse().unwrap_or_else(Matrix2::zeros);
+        let along = |v: &Vector3<f64>| Vector2::new(a[0].dot(v), a[1].dot(v));
+        let s = dual * along(&total);
+        let column = |k: usize| {
+            let own = Vector2::from_fn(|i, _| second[SECOND[i][k]].dot(&total) + share * metric[(i, k)]);
+            let change = Matrix2::from_fn(|i, j| second[SECOND[i][k]].dot(&a[j]) + a[i].dot(&second[SECOND[j][k]]));
+            dual * (own - change * s)
+        };
+        Self {
+            slip: s,
+            by_place: Matrix2::from_columns(&[column(0), column(1)]),
+            by_gap: dual * along(&slip.way) * share_slope,
+        }
     }
 }

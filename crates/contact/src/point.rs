@@ -149,7 +149,7 @@ impl Point {
             slip.elastic = elastic.try_normalize(0.0).unwrap_or_default() * self.old.elastic_length;
             slip.share = share(self.old.gap, self.old.pressure, self.new.gap);
         }
-        law::friction(&slip, options.tangential_penalty, options.friction, pressure)
+        law::friction(&slip, &foot.local.metric(), options.tangential_penalty, options.friction, pressure)
     }
 
     /// The trial becomes the committed state.

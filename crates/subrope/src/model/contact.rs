@@ -113,9 +113,7 @@ fn options(scene: &Scene, entry: &scene::Contact, modulus: f64, size: f64) -> Co
         friction: entry.friction,
         method: match entry.method {
             ContactMethod::Penalty => Method::Penalty,
-            ContactMethod::Augmented => {
-                Method::Augmented { penetration: entry.penetration * size, rounds: ROUNDS }
-            }
+            ContactMethod::Augmented => Method::Augmented { penetration: entry.penetration * size, rounds: ROUNDS },
         },
         tangent: match entry.tangent {
             ContactTangent::Exact => FrictionTangent::Exact,

@@ -199,8 +199,9 @@ type Motions = BTreeMap<Key, MotionPath>;
 
 fn initial_standing(scene: &Scene) -> BTreeMap<Key, Standing> {
     let held = || Standing { free: false, value: Some(0.0), arc: Some(0.0) };
-    let points =
-        scene.point_names().flat_map(|name| Component::ALL.into_iter().map(|c| (MotionTarget::Point(name.to_owned()), c)));
+    let points = scene
+        .point_names()
+        .flat_map(|name| Component::ALL.into_iter().map(|c| (MotionTarget::Point(name.to_owned()), c)));
     let constraints = scene.constraint.iter().flat_map(|constraint| {
         let listed = Component::ALL.into_iter().zip(constraint.components.values()).filter(|(_, v)| v.is_some());
         listed.map(|(c, _)| (MotionTarget::Constraint(constraint.name.clone()), c))

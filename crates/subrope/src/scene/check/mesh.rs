@@ -7,7 +7,8 @@ use crate::scene::{Deck, Fibres, Formulation, HelixFibres, Strand};
 impl Checker<'_> {
     pub(super) fn mesh(&mut self) {
         let scene = self.scene;
-        let meshes = [("strand", scene.strand.is_some()), ("rope", scene.rope.is_some()), ("deck", scene.deck.is_some())];
+        let meshes =
+            [("strand", scene.strand.is_some()), ("rope", scene.rope.is_some()), ("deck", scene.deck.is_some())];
         let given: Vec<&str> = meshes.iter().filter(|(_, given)| *given).map(|(key, _)| *key).collect();
         match given[..] {
             [] => {
