@@ -129,6 +129,7 @@ impl Ready {
                 displacement: &self.displacement,
                 committed: &self.nodal,
                 time_increment: 1.0,
+                time: 1.0,
                 temperature: 293.15,
                 parallel: false,
             },

@@ -184,7 +184,7 @@ fn one_inverted_brick_is_named_by_its_number() {
         std::fs::write(&file, deck_with_inverted(labels)).unwrap();
         let error = RopeModel::from_scene(&scene(&deck_scene("inverted.inp")), Some(&file), Some(1)).err().unwrap();
         println!("{error}");
-        let ModelError::Geometry(GeometryError::Inverted { cell_label, determinant }) = &error else {
+        let ModelError::DeckMesh { cause: GeometryError::Inverted { cell_label, determinant }, .. } = &error else {
             panic!("{error:?}")
         };
         assert_eq!(*cell_label, labels[0]);

@@ -593,7 +593,12 @@ fn faceted(part: f64, approach: f64, points: usize, smoothing: Smoothing) -> [f6
         let faces: Vec<Face> = faces.iter().map(|f| Face { cell: f.cell + start[1], face: f.face }).collect();
         Surface::new(&bodies.mesh, &faces, smoothing).unwrap()
     };
-    let options = ContactOptions { points: [points, 3], ..ContactOptions::new(2000.0, radius) };
+    let options = ContactOptions {
+        penalty: 8000.0,
+        tangential_penalty: 8000.0,
+        points: [points, 3],
+        ..ContactOptions::new(2000.0, radius)
+    };
     let (primary, secondary) = (surface(starts[0]), surface(starts[1]));
     let pair = Contact::new("pair", primary, secondary, &bodies.mesh.points, options).unwrap();
     let core = |start: [u32; 2], centre: Vector3<f64>| {

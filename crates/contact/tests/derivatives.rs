@@ -48,7 +48,7 @@ fn add(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 fn options(friction: f64) -> ContactOptions {
     let base = ContactOptions::new(100.0, 1.0);
-    ContactOptions { friction, reach: 0.3, tangential_penalty: 700.0, points: [4, 4], ..base }
+    ContactOptions { friction, penalty: 2000.0, reach: 0.3, tangential_penalty: 700.0, points: [4, 4], ..base }
 }
 
 /// A contact with a history: pressed, moved aside, committed; then the trial displacements.

@@ -24,13 +24,14 @@ macro_rules! templates {
 }
 
 /// All of them.
-pub(super) static TEMPLATES: [Template; 6] = templates! {
+pub(super) static TEMPLATES: [Template; 7] = templates! {
     "bent_strand_coarse": "a coarse strand bent by 45 degrees: the first minute",
     "bent_strand": "a strand bent to a half circle, with friction between rope-yarns",
     "bent_strand_elastic": "the same without friction",
     "rope_yarn_tension": "one rope-yarn in tension: identification of the moduli along the yarns",
     "strand_tension": "a strand in tension, its ends kept from turning",
     "tension_twist": "a strand pulled, then twisted to and fro",
+    "sub_rope_tension": "three strands laid together, in contact, stretched",
 };
 
 fn find(name: &str) -> Result<&'static Template, Error> {

@@ -23,7 +23,7 @@ pub struct Contact {
     /// "penalty", or "augmented": a multiplier takes over until the penetration falls below `penetration`.
     #[serde(default)]
     pub method: ContactMethod,
-    /// Normal penalty \[MPa/mm\]; 20 times the transverse stiffness over the radius when left out.
+    /// Normal penalty \[MPa/mm\]; 300 times the transverse stiffness at rest over the radius when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub penalty: Option<f64>,
