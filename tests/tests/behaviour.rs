@@ -193,7 +193,9 @@ fn one_inverted_brick_is_named_by_its_number() {
     }
     std::fs::write(&file, deck_with_inverted(&[5, 44, 123])).unwrap();
     let error = RopeModel::from_scene(&scene(&deck_scene("inverted.inp")), Some(&file), Some(1)).err().unwrap();
-    let ModelError::Geometry(GeometryError::InvertedCells { cell_labels, .. }) = &error else { panic!("{error:?}") };
+    let ModelError::DeckMesh { cause: GeometryError::InvertedCells { cell_labels, .. }, .. } = &error else {
+        panic!("{error:?}")
+    };
     assert_eq!(cell_labels, &[5, 44, 123]);
 }
 

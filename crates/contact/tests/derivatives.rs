@@ -1,5 +1,7 @@
 //! Forces against the potential, the tangent against differences of the forces.
 
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use common::{Noise, contact, crossed, evaluate};

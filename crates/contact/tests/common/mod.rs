@@ -1,5 +1,6 @@
 //! Two bodies, a sink that keeps what it is given, and random displacements.
 #![allow(dead_code, missing_docs)]
+#![allow(clippy::expect_used, reason = "a helper of tests fails by panicking")]
 
 use nalgebra::{Rotation3, Vector3};
 use subrope_contact::{Contact, ContactOptions, Smoothing, Surface};
