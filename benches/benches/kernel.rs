@@ -75,6 +75,7 @@ fn run_elements(bench: &mut criterion::Bencher<'_>, contribution: &mut dyn Contr
         displacement: u,
         committed: &committed,
         time_increment: 1.0,
+        time: 1.0,
         temperature: REFERENCE_TEMPERATURE,
         parallel: false,
     };
@@ -132,6 +133,7 @@ fn system(c: &mut Criterion) {
                 displacement: &u,
                 committed: &u,
                 time_increment: 1.0,
+                time: 1.0,
                 temperature: REFERENCE_TEMPERATURE,
                 parallel: false,
             },
