@@ -3,9 +3,12 @@
 use serde::Serialize;
 use subrope_contact::{Contact, ContactReport};
 use subrope_fem::analysis::Analysis;
+#[cfg(feature = "hdf5")]
 use subrope_geometry::{CellKind, Mesh, Quad4, Quad9, quadrilateral};
 
-use crate::model::{ContactCells, MeshModel};
+#[cfg(feature = "hdf5")]
+use crate::model::ContactCells;
+use crate::model::MeshModel;
 
 /// A pair of surfaces at the end of a run.
 #[derive(Clone, Debug, Serialize)]
@@ -66,6 +69,7 @@ pub fn strand_forces(mesh: &MeshModel, analysis: &Analysis) -> Vec<f64> {
     (0..rope.strands.len()).map(share).collect()
 }
 
+#[cfg(feature = "hdf5")]
 /// A quantity on the cells whose faces touch, mean over the face by reference area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactField {
@@ -77,6 +81,7 @@ pub enum ContactField {
     Slip,
 }
 
+#[cfg(feature = "hdf5")]
 /// Values of all cells of a mesh; both sides of a pair show what happens between them.
 pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
     let mut sums = vec![0.0; mesh.cell_count()];
@@ -108,6 +113,7 @@ pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[Cont
     sums.iter().zip(&areas).map(|(s, a)| if *a > 0.0 { s / a } else { 0.0 }).collect()
 }
 
+#[cfg(feature = "hdf5")]
 fn face_area(mesh: &Mesh, face: subrope_geometry::Face) -> f64 {
     match mesh.kind {
         CellKind::Hex8 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad4, 4>(&x)),
