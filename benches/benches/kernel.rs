@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use subrope_benches::{block, bundle, displacement, gradients, model, orthotropic, strand};
 use subrope_fem::linear::SolverOptions;
 use subrope_fem::solid::{Full, MeanElongation, MeanVolume};
-use subrope_fem::{Configuration, Contribution, Evaluation, REFERENCE_TEMPERATURE, Request, Sink, System};
+use subrope_fem::{Configuration, Contribution, Evaluation, Product, REFERENCE_TEMPERATURE, Request, Sink, System};
 use subrope_material::{Law, Request as LawRequest, Response};
 
 /// Takes elements and forgets them: measures the elements alone.
@@ -17,6 +17,10 @@ struct Nowhere(f64);
 impl Sink for Nowhere {
     fn add(&mut self, _: usize, force: &[f64], stiffness: Option<&[f64]>) {
         self.0 += force[0] + stiffness.map_or(0.0, |k| k[0]);
+    }
+
+    fn add_products(&mut self, _: usize, products: &[Product<'_>]) {
+        self.0 += products.len() as f64;
     }
 }
 
@@ -77,6 +81,7 @@ fn run_elements(bench: &mut criterion::Bencher<'_>, contribution: &mut dyn Contr
         time_increment: 1.0,
         time: 1.0,
         temperature: REFERENCE_TEMPERATURE,
+        predicting: false,
         parallel: false,
     };
     let mut sink = Nowhere(0.0);
@@ -135,6 +140,7 @@ fn system(c: &mut Criterion) {
                 time_increment: 1.0,
                 time: 1.0,
                 temperature: REFERENCE_TEMPERATURE,
+                predicting: false,
                 parallel: false,
             },
             external: &external,

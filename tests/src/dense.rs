@@ -47,6 +47,7 @@ impl Dense {
                 time_increment: 1.0,
                 time: 1.0,
                 temperature: 293.15,
+                predicting: false,
                 parallel: false,
             },
             external: &vec![0.0; 3 * nodes],

@@ -131,6 +131,7 @@ impl Ready {
                 time_increment: 1.0,
                 time: 1.0,
                 temperature: 293.15,
+                predicting: false,
                 parallel: false,
             },
             external: &self.nodal,

@@ -379,7 +379,11 @@ impl Contribution for Contact {
     }
 
     fn is_symmetric(&self) -> bool {
-        self.options.friction == 0.0 || self.options.tangent == FrictionTangent::Symmetric
+        true
+    }
+
+    fn has_products(&self) -> bool {
+        self.options.friction > 0.0 && self.options.tangent == FrictionTangent::Exact
     }
 
     fn has_potential(&self) -> bool {
@@ -432,6 +436,7 @@ impl Contribution for Contact {
                 if used {
                     let stiffness = (request == Request::Tangent).then_some(buffer.stiffness.as_slice());
                     sink.add(element, &buffer.force, stiffness);
+                    buffer.products().for_each(|products| sink.add_products(element, &products));
                 }
             }
         }
@@ -510,7 +515,7 @@ impl Contact {
                 (point.new.pressure, point.new.traction) = (0.0, Vector3::zeros());
                 continue;
             };
-            let (touch, e) = point.evaluate(&foot, &committed, &self.options, ramp);
+            let (touch, e) = point.evaluate(&foot, &committed, &self.options, ramp, configuration.predicting);
             energies.potential += point.area * e.potential;
             energies.contact_stored += point.area * e.stored;
             energies.contact_friction += point.area * e.friction;

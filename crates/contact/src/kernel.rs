@@ -11,6 +11,8 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
+use subrope_fem::Product;
+
 use crate::foot::{Foot, Local};
 use crate::law::Friction;
 use crate::patch::{PATCH_NODES, SECOND};
@@ -19,7 +21,7 @@ use crate::patch::{PATCH_NODES, SECOND};
 pub const Z: usize = 18;
 
 /// A linear form of the 18 numbers.
-type Form = [f64; Z];
+pub type Form = [f64; Z];
 
 /// Forces and tangent in the 18 numbers, per reference area.
 #[derive(Clone, Debug)]
@@ -30,6 +32,23 @@ pub struct PointTerms {
     pub tangent: [Form; Z],
     /// Vectors in use: three without friction, six with.
     pub blocks: usize,
+    /// What the tangent has beside its symmetric `tangent`.
+    pub coupling: Option<Coupling>,
+}
+
+/// The part of the tangent of friction that is not symmetric: `sum_i place_i rest_i^T + lagged_i place_i^T`.
+///
+/// The tangent of friction is `place_i dt_i^T` and a symmetric rest. Of `dt_i` the part at constant pressure, `l_i`, goes
+/// into the tangent as `(place_i l_i^T + l_i place_i^T)/2`; what is left over has `rest_i = dt_i - l_i/2` and
+/// `lagged_i = -l_i/2`. So the symmetric part alone is the tangent of friction whose limit lags behind the pressure.
+#[derive(Clone, Debug)]
+pub struct Coupling {
+    /// `dxi_i`.
+    pub place: [Form; 2],
+    /// `dt_i - l_i/2`.
+    pub rest: [Form; 2],
+    /// `-l_i/2`.
+    pub lagged: [Form; 2],
 }
 
 fn form(block: usize, v: &Vector3<f64>) -> Form {
@@ -62,16 +81,6 @@ impl PointTerms {
     fn outer_both(&mut self, scale: f64, one: &Form, other: &Form) {
         self.outer(scale, one, other);
         self.outer(scale, other, one);
-    }
-
-    /// The tangent replaced by its symmetric part.
-    fn symmetrise(&mut self) {
-        for i in 0..Z {
-            for j in 0..i {
-                let mean = 0.5 * (self.tangent[i][j] + self.tangent[j][i]);
-                (self.tangent[i][j], self.tangent[j][i]) = (mean, mean);
-            }
-        }
     }
 }
 
@@ -116,13 +125,10 @@ pub fn terms(
 ) -> Option<PointTerms> {
     let v = Variations::new(foot)?;
     let blocks = if friction.is_some() { 6 } else { 3 };
-    let mut out = PointTerms { force: [0.0; Z], tangent: [[0.0; Z]; Z], blocks };
+    let mut out = PointTerms { force: [0.0; Z], tangent: [[0.0; Z]; Z], blocks, coupling: None };
     add_normal(foot, pressure, &v, &mut out)?;
     if let Some((friction, third)) = friction {
-        add_friction(foot, friction, third, &v, &mut out);
-        if symmetric {
-            out.symmetrise();
-        }
+        add_friction(foot, friction, third, &v, symmetric, &mut out);
     }
     Some(out)
 }
@@ -142,20 +148,34 @@ fn add_normal(foot: &Foot, (p, slope): (f64, f64), v: &Variations, out: &mut Poi
     Some(())
 }
 
-fn add_friction(foot: &Foot, friction: &Friction, third: &[Vector3<f64>; 4], v: &Variations, out: &mut PointTerms) {
+fn add_friction(
+    foot: &Foot,
+    friction: &Friction,
+    third: &[Vector3<f64>; 4],
+    v: &Variations,
+    symmetric: bool,
+    out: &mut PointTerms,
+) {
+    let (mut rest, mut lagged) = ([[0.0; Z]; 2], [[0.0; Z]; 2]);
     let t = &friction.traction;
     let stretch = metric_changes(&foot.local, v);
     for i in 0..2 {
         add(&mut out.force, t[i], &v.place[i]);
         let mut change = combine([friction.by_place[(i, 0)], friction.by_place[(i, 1)]], &v.place);
-        add(&mut change, friction.by_gap[i], &v.gap);
         for (j, row) in stretch.iter().enumerate() {
             for (k, form) in row.iter().enumerate() {
                 add(&mut change, friction.by_metric[i][(j, k)], form);
             }
         }
-        out.outer(1.0, &v.place[i], &change);
+        let slow = change;
+        add(&mut change, friction.by_gap[i], &v.gap);
+        let half = if symmetric { &change } else { &slow };
+        out.outer_both(0.5, &v.place[i], half);
+        add(&mut lagged[i], -0.5, half);
+        rest[i] = change;
+        add(&mut rest[i], 1.0, &lagged[i]);
     }
+    out.coupling = (!symmetric).then(|| Coupling { place: v.place, rest, lagged });
     add_second_variation(foot, &(v.inverse * t), third, v, out);
 }
 
@@ -218,8 +238,10 @@ fn add_second_variation(
 pub struct PairBuffer {
     /// Forces \[N\].
     pub force: Vec<f64>,
-    /// Stiffness \[N/mm\], row-major.
+    /// Stiffness \[N/mm\], row-major; symmetric, only entries with row node <= column node are there.
     pub stiffness: Vec<f64>,
+    /// Of every point the six vectors of its [`Coupling`], spread to the nodes.
+    pub couplings: Vec<f64>,
 }
 
 impl PairBuffer {
@@ -228,6 +250,7 @@ impl PairBuffer {
         self.force.clear();
         self.force.resize(3 * n, 0.0);
         self.stiffness.clear();
+        self.couplings.clear();
         if tangent {
             self.stiffness.resize(9 * n * n, 0.0);
         }
@@ -265,6 +288,39 @@ impl PairBuffer {
                 self.spread_block(terms, used, (k, m), (count, n), area);
             }
         }
+        if let Some(coupling) = &terms.coupling {
+            let scaled = [&coupling.place, &coupling.rest, &coupling.lagged].into_iter().zip([1.0, area, area]);
+            for (form, scale) in scaled.flat_map(|(forms, s)| forms.iter().map(move |f| (f, s))) {
+                self.spread_form(form, used, n, scale);
+            }
+        }
+    }
+
+    /// Appends a form as a nodal vector.
+    fn spread_form(&mut self, form: &Form, weights: &[[f64; 2 * PATCH_NODES]], n: usize, scale: f64) {
+        let start = self.couplings.len();
+        self.couplings.resize(start + 3 * n, 0.0);
+        for (k, line) in self.couplings[start..].chunks_exact_mut(n).enumerate() {
+            for (i, w) in weights.iter().enumerate() {
+                let f = scale * form[3 * i + k];
+                line.iter_mut().zip(w).for_each(|(o, w)| *o += f * w);
+            }
+        }
+    }
+
+    /// The products of every point.
+    pub fn products(&self) -> impl Iterator<Item = [Product<'_>; 4]> {
+        let n = self.force.len();
+        self.couplings.chunks_exact(6 * n).map(move |all| {
+            let [place, rest, lagged] = [0, 2, 4].map(|k| [&all[k * n..(k + 1) * n], &all[(k + 1) * n..(k + 2) * n]]);
+            let product = |row, column| Product { row, column };
+            [
+                product(place[0], rest[0]),
+                product(place[1], rest[1]),
+                product(lagged[0], place[0]),
+                product(lagged[1], place[1]),
+            ]
+        })
     }
 
     /// Components `k` of rows and `m` of columns.
@@ -288,7 +344,8 @@ impl PairBuffer {
             let first = if i == 0 { 0 } else { count };
             for (a, &w) in row_weights.iter().enumerate().take(n).skip(first) {
                 let at = (k * n + a) * 3 * n + m * n;
-                self.stiffness[at..at + n].iter_mut().zip(&line).for_each(|(o, l)| *o += w * l);
+                let line = &line[a..n];
+                self.stiffness[at + a..at + n].iter_mut().zip(line).for_each(|(o, l)| *o += w * l);
             }
         }
     }

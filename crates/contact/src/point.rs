@@ -7,6 +7,9 @@ use crate::foot::{Foot, Local, Place, Posture};
 use crate::law::{self, Friction, Slip};
 use crate::patch::PATCH_NODES;
 
+/// Part of the reach below which an open point counts as about to close.
+const CLOSING: f64 = 0.01;
+
 /// What a point remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct History {
@@ -106,9 +109,10 @@ impl Point {
         committed: &Posture<'_>,
         options: &ContactOptions,
         ramp: Ramp,
+        predicting: bool,
     ) -> (Option<Touch>, PointEnergies) {
         let gap = foot.gap - self.overlap * ramp.new;
-        let pressure = law::pressure(self.multiplier, options.penalty, gap);
+        let mut pressure = law::pressure(self.multiplier, options.penalty, gap);
         let (p, _) = pressure;
         self.hint = Some(foot.place);
         self.new = History { place: Some(foot.place), gap, pressure: p, ..History::default() };
@@ -120,6 +124,12 @@ impl Point {
             ..PointEnergies::default()
         };
         if p == 0.0 {
+            // A point that is about to close keeps its gap in the linear first step of an increment: surfaces that just
+            // touch would run deep into each other before any pressure shows.
+            if predicting && gap < CLOSING * options.reach {
+                pressure.1 = -options.penalty;
+                return (Some(Touch { pressure, friction: None }), energies);
+            }
             return (None, energies);
         }
         energies.stored = 0.5 * options.penalty * gap.min(0.0).powi(2);

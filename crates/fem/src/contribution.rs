@@ -25,6 +25,9 @@ pub struct Configuration<'a> {
     pub time: f64,
     /// Temperature \[K\].
     pub temperature: f64,
+    /// Whether this is the linear first step of an increment, from the committed state: surfaces that are about to close
+    /// may resist already.
+    pub predicting: bool,
     /// Whether the calling thread may share its work.
     pub parallel: bool,
 }
@@ -82,6 +85,19 @@ impl std::ops::AddAssign for Energies {
 pub trait Sink {
     /// Adds one element.
     fn add(&mut self, element: usize, force: &[f64], stiffness: Option<&[f64]>);
+
+    /// Adds products `row column^T` to the stiffness of an element, beside what [`Sink::add`] got. They need not be
+    /// symmetric: a few of them say what friction couples to pressure, and leave the rest symmetric.
+    fn add_products(&mut self, element: usize, products: &[Product<'_>]);
+}
+
+/// A stiffness `row column^T` of one element; both vectors are component-major.
+#[derive(Clone, Copy, Debug)]
+pub struct Product<'a> {
+    /// Forces.
+    pub row: &'a [f64],
+    /// Weights of the displacements.
+    pub column: &'a [f64],
 }
 
 /// What a contribution says of a converged iteration.
@@ -101,8 +117,13 @@ pub trait Contribution: Send {
     /// Nodes of an element.
     fn element_nodes(&self, element: usize) -> &[u32];
 
-    /// Whether its tangent is symmetric for every input.
+    /// Whether the stiffness that it gives to [`Sink::add`] is symmetric for every input.
     fn is_symmetric(&self) -> bool;
+
+    /// Whether its tangent has a part that it gives to [`Sink::add_products`].
+    fn has_products(&self) -> bool {
+        false
+    }
 
     /// Whether its forces derive from an incremental potential.
     fn has_potential(&self) -> bool;

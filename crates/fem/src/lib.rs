@@ -14,7 +14,7 @@ pub mod parallel;
 pub mod solid;
 
 pub use assembly::{Assembled, Equations, Evaluation, Jump, System};
-pub use contribution::{Configuration, Contribution, Energies, Request, Sink, Verdict};
+pub use contribution::{Configuration, Contribution, Energies, Product, Request, Sink, Verdict};
 pub use error::FemError;
 
 /// Temperature when nothing else is said \[K\].

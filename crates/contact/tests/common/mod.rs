@@ -4,7 +4,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 use subrope_contact::{Contact, ContactOptions, Smoothing, Surface};
-use subrope_fem::{Configuration, Contribution, Energies, FemError, Request, Sink};
+use subrope_fem::{Configuration, Contribution, Energies, FemError, Product, Request, Sink};
 use subrope_geometry::{CellKind, Mesh, Strand, StrandOrigin, strand};
 
 /// Small pseudo-random numbers in \[-1, 1\].
@@ -86,11 +86,20 @@ impl Sink for Keep {
                 let Some(matrix) = stiffness else { continue };
                 for m in 0..3 {
                     for (b, &column) in nodes.iter().enumerate() {
-                        self.product[3 * node as usize + k] +=
-                            matrix[((k * n + a) * 3 + m) * n + b] * self.direction[3 * column as usize + m];
+                        let at = if a <= b { ((k * n + a) * 3 + m) * n + b } else { ((m * n + b) * 3 + k) * n + a };
+                        self.product[3 * node as usize + k] += matrix[at] * self.direction[3 * column as usize + m];
                     }
                 }
             }
+        }
+    }
+
+    fn add_products(&mut self, element: usize, products: &[Product<'_>]) {
+        let nodes = &self.nodes[element];
+        let entries: Vec<usize> = (0..3).flat_map(|k| nodes.iter().map(move |&n| 3 * n as usize + k)).collect();
+        for product in products {
+            let factor: f64 = entries.iter().zip(product.column).map(|(&at, c)| c * self.direction[at]).sum();
+            entries.iter().zip(product.row).for_each(|(&at, r)| self.product[at] += r * factor);
         }
     }
 }
@@ -106,7 +115,7 @@ pub fn evaluate(
     let n = displacement.len();
     let mut keep = Keep { force: vec![0.0; n], product: vec![0.0; n], direction: direction.to_vec(), nodes };
     let configuration =
-        Configuration { displacement, committed, time_increment: 1.0, time: 1.0, temperature: 293.15, parallel: false };
+        Configuration { displacement, committed, time_increment: 1.0, time: 1.0, temperature: 293.15, predicting: false, parallel: false };
     let energies = contact.assemble(&configuration, Request::Tangent, &mut keep)?;
     Ok((keep.force, keep.product, energies))
 }

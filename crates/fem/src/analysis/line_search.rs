@@ -1,5 +1,9 @@
 //! How far to go along a correction.
 //!
+//! Contacts make the residual bend sharply where a point closes or begins to slide: full corrections then pass bends at
+//! which a residual that must fall every time would stop. With contacts it may rise, as long as it stays below the
+//! largest of the last few (Grippo, Lampariello and Lucidi 1986).
+//!
 //! Where the update derives from an incremental potential (no pressure-dependent friction) the potential must fall
 //! (Armijo); elsewhere the residual must, in norm or along the correction. A full step that halves the residual is taken
 //! at once. When points switch between sticking and sliding, plain Newton can cycle for ever and shorter increments do
@@ -14,6 +18,8 @@ use crate::contribution::Request;
 const ARMIJO: f64 = 1e-4;
 /// Most trial lengths.
 const TRIALS: usize = 8;
+/// Iterates whose largest residual is the limit with contacts.
+const MEMORY: usize = 5;
 /// Rounding of a sum of energies, over its size.
 const ENERGY_NOISE: f64 = 1e-13;
 
@@ -23,6 +29,8 @@ struct Comparison {
     slope: f64,
     base_norm: f64,
     base_potential: f64,
+    /// Largest norm of the last few iterates, where rising is allowed.
+    ceiling: f64,
 }
 
 /// Whether an error is not helped by a shorter correction.
@@ -33,8 +41,13 @@ fn ends_search(error: &FemError) -> bool {
 impl Analysis {
     /// Moves the base along the correction and leaves it evaluated there with its tangent.
     pub(super) fn advance(&mut self, work: &mut Workspace, slope: f64) -> Result<(), FemError> {
-        let mut search =
-            Comparison { length: 1.0, slope, base_norm: work.base.norm, base_potential: work.base.potential };
+        let mut search = Comparison {
+            length: 1.0,
+            slope,
+            base_norm: work.base.norm,
+            base_potential: work.base.potential,
+            ceiling: self.ceiling(work),
+        };
         let mut best: Option<(f64, f64)> = None;
         for trial in 0..TRIALS {
             let request = if trial == 0 { Request::Tangent } else { Request::Residual };
@@ -82,7 +95,7 @@ impl Analysis {
 
     fn acceptable(&self, search: &Comparison, work: &Workspace) -> bool {
         let trial = &work.trial;
-        if trial.norm <= 0.5 * search.base_norm {
+        if trial.norm <= (0.5 * search.base_norm).max(search.ceiling) {
             return true;
         }
         if self.has_potential() && search.slope < 0.0 {
@@ -104,6 +117,16 @@ impl Analysis {
             s * search.slope / (search.slope - along)
         };
         if guess.is_finite() { guess.clamp(0.1 * s, 0.5 * s) } else { 0.5 * s }
+    }
+
+    /// Largest norm among the last iterates of a model with contacts; the present one joins them.
+    fn ceiling(&self, work: &mut Workspace) -> f64 {
+        if !self.model.contributions.iter().any(|c| c.has_products()) {
+            return 0.0;
+        }
+        work.norms.push(work.base.norm);
+        let first = work.norms.len().saturating_sub(MEMORY);
+        work.norms[first..].iter().fold(0.0, |most: f64, v| most.max(*v))
     }
 
     fn has_potential(&self) -> bool {

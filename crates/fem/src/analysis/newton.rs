@@ -69,6 +69,7 @@ impl Analysis {
     ) -> Result<(), FemError> {
         self.model.contributions.iter_mut().for_each(|c| c.revert());
         self.first_iterate(work, attempt, record)?;
+        work.norms.clear();
         let mut largest_energy = 0.0_f64;
         let mut energy = 0.0;
         // Iterations and residuals before this round of multipliers.
@@ -164,7 +165,7 @@ impl Analysis {
         system.equations().gather(&work.base.residual, &mut work.rhs);
         work.rhs.iter_mut().for_each(|v| *v = -*v);
         let (rhs, x) = (&work.rhs, &mut work.correction);
-        self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
+        self.totals.linear_iterations += self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
         Ok(pivots)
     }
 
@@ -201,6 +202,7 @@ impl Analysis {
                 time_increment: target.time_increment,
                 time: self.time + target.time_increment,
                 temperature: self.options.temperature,
+                predicting: jump.is_some(),
                 parallel: self.threads > 1,
             },
             external: &target.nodal,

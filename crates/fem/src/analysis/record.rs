@@ -64,6 +64,8 @@ pub struct Totals {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Iterations of GMRES in all solutions, where contact friction makes the tangent unsymmetric.
+    pub linear_iterations: usize,
     /// Rounds in which an augmented Lagrangian moved its multipliers.
     pub augmentations: usize,
     /// Patterns made anew because surfaces touched elsewhere.

@@ -48,6 +48,8 @@ pub struct Target {
 /// Buffers of the iteration.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
+    /// Norms of the residual in this attempt, for the line search.
+    pub norms: Vec<f64>,
     /// Where the iteration stands.
     pub base: Iterate,
     /// Where it tries to go.
@@ -77,6 +79,7 @@ impl Workspace {
             rhs: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
             jump: vec![0.0; 3 * nodes],
+            norms: Vec::new(),
         }
     }
 }

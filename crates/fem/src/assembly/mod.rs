@@ -1,6 +1,7 @@
 //! From elements to a sparse system in the free coordinates.
 
 mod equations;
+mod products;
 mod scatter;
 mod system;
 

@@ -1,11 +1,12 @@
 //! The sparse system of a model for one set of prescribed coordinates: pattern, scatter maps, solver, assembly.
 
 use super::Equations;
+use super::products::Products;
 use super::scatter::{self, Cliques, ScatterMap};
 use crate::FemError;
-use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
+use crate::contribution::{Configuration, Contribution, Energies, Product, Request, Sink};
 use crate::kinematics::{Kinematics, Reduction, Tie};
-use crate::linear::{AnalysisReport, LinearSolver, SolverOptions, SparsePattern, Storage};
+use crate::linear::{AnalysisReport, Gmres, LinearError, LinearOperator, LinearSolver, SolverOptions, SparsePattern, Storage};
 
 /// Pattern, scatter maps, matrix values and solver: made once per set of prescribed coordinates.
 pub struct System {
@@ -13,6 +14,10 @@ pub struct System {
     pattern: SparsePattern,
     maps: Vec<ScatterMap>,
     solver: LinearSolver,
+    /// What the tangent has beside the matrix.
+    products: Products,
+    has_products: bool,
+    gmres: Gmres,
     /// Matrix values, with one spare position at the end.
     values: Vec<f64>,
     /// Internal nodal forces \[N\].
@@ -68,6 +73,9 @@ impl System {
             ties: Vec::new(),
             nodes: contributions.iter().map(|c| Nodes::of(c.as_ref())).collect(),
             reduction: Reduction::default(),
+            products: Products::default(),
+            has_products: contributions.iter().any(|c| c.has_products()),
+            gmres: Gmres::default(),
             equations,
             pattern,
             maps,
@@ -80,9 +88,9 @@ impl System {
         &self.equations
     }
 
-    /// Whether the matrix is symmetric.
+    /// Whether the tangent is symmetric.
     pub fn is_symmetric(&self) -> bool {
-        self.pattern.storage() == Storage::Lower
+        !self.has_products && self.pattern.storage() == Storage::Lower
     }
 
     /// Stored entries of the matrix.
@@ -115,10 +123,11 @@ impl System {
         self.nodal.fill(0.0);
         if at.request == Request::Tangent {
             self.values.fill(0.0);
+            self.products.clear();
         }
         let mut out = Assembled::default();
         let (mut scale, mut stiffness_scale) = (0.0, 0.0);
-        let symmetric = self.is_symmetric();
+        let symmetric = self.pattern.storage() == Storage::Lower;
         for ((contribution, map), nodes) in contributions.iter_mut().zip(&mut self.maps).zip(&self.nodes) {
             let mut sink = Assembler {
                 kinematics,
@@ -133,6 +142,7 @@ impl System {
                 displacement: at.configuration.displacement,
                 nodal: &mut self.nodal,
                 values: &mut self.values,
+                products: &mut self.products,
                 reduction: &mut self.reduction,
                 scale: 0.0,
                 stiffness_scale: 0.0,
@@ -160,28 +170,59 @@ impl System {
         }
     }
 
-    /// Factorises the assembled matrix. Returns the number of negative pivots where the factorisation knows it.
+    /// Factorises the assembled matrix, without the products beside it. Returns the number of negative pivots where the factorisation knows it.
     ///
     /// # Errors
     /// [`FemError::Linear`].
     pub fn factorise(&mut self) -> Result<Option<usize>, FemError> {
         let nnz = self.pattern.nnz();
         let report = self.solver.factorise(&self.values[..nnz])?;
-        Ok(report.negative_pivots)
+        Ok(report.negative_pivots.filter(|_| self.products.is_empty()))
     }
 
-    /// Solves `K x = rhs` with the last factorisation.
+    /// Solves `K x = rhs` with the last factorisation: at once, or by GMRES where products stand beside the matrix, which
+    /// the factors then precondition. Answers the iterations that this took.
     ///
     /// # Errors
     /// [`FemError::Linear`].
-    pub fn solve(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<(), FemError> {
-        self.solver.solve(rhs, x)?;
-        Ok(())
+    pub fn solve(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<usize, FemError> {
+        if self.products.is_empty() {
+            self.solver.solve(rhs, x)?;
+            return Ok(0);
+        }
+        let mut operator = Tangent { solver: &mut self.solver, products: &self.products };
+        Ok(self.gmres.solve(&mut operator, rhs, x)?.iterations)
+    }
+
+    /// `K x` with the values last factorised.
+    ///
+    /// # Errors
+    /// [`FemError::Linear`].
+    pub fn multiply(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), FemError> {
+        Ok(Tangent { solver: &mut self.solver, products: &self.products }.apply(x, out)?)
     }
 
     /// Matrix values and pattern, for checks.
     pub fn matrix(&self) -> (&SparsePattern, &[f64]) {
         (&self.pattern, &self.values[..self.pattern.nnz()])
+    }
+}
+
+/// Matrix and products.
+struct Tangent<'a> {
+    solver: &'a mut LinearSolver,
+    products: &'a Products,
+}
+
+impl LinearOperator for Tangent<'_> {
+    fn apply(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
+        self.solver.multiply(x, out)?;
+        self.products.multiply_add(x, out);
+        Ok(())
+    }
+
+    fn precondition(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
+        self.solver.solve_once(x, out)
     }
 }
 
@@ -267,6 +308,7 @@ struct Assembler<'a> {
     displacement: &'a [f64],
     nodal: &'a mut [f64],
     values: &'a mut [f64],
+    products: &'a mut Products,
     reduction: &'a mut Reduction,
     scale: f64,
     stiffness_scale: f64,
@@ -308,6 +350,21 @@ impl Sink for Assembler<'_> {
                 self.map.add_tied(element, size, self.symmetric, reduced, self.values);
             }
         }
+    }
+
+    fn add_products(&mut self, element: usize, products: &[Product<'_>]) {
+        let nodes = self.nodes.element(element);
+        if let Some(jump) = self.jump {
+            let n = nodes.len();
+            for product in products {
+                let entries = (0..3).flat_map(|k| nodes.iter().map(move |&node| 3 * node as usize + k));
+                let factor: f64 = entries.zip(product.column).map(|(at, c)| c * jump.displacement[at]).sum();
+                for (i, r) in product.row.iter().enumerate() {
+                    self.nodal[3 * nodes[i % n] as usize + i / n] += r * factor;
+                }
+            }
+        }
+        self.products.push(self.kinematics, self.ties, self.equations, nodes, products);
     }
 }
 

@@ -42,8 +42,13 @@ impl Tie {
         }
     }
 
+    /// The coordinates that move the node.
+    pub(crate) fn coordinates(&self) -> impl Iterator<Item = u32> {
+        (self.first..self.first + 6).chain(self.slide.iter().map(|(c, _)| *c))
+    }
+
     /// Column of the derivative that belongs to a coordinate.
-    fn column(&self, coordinate: u32) -> Vector3<f64> {
+    pub(crate) fn column(&self, coordinate: u32) -> Vector3<f64> {
         match coordinate.wrapping_sub(self.first) {
             k @ 0..=2 => Vector3::ith(k as usize, 1.0),
             k @ 3..=5 => self.rotation.column(k as usize - 3).into_owned(),

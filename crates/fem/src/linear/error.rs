@@ -99,6 +99,16 @@ pub enum LinearError {
         /// Steps of iterative refinement taken.
         refinements: usize,
     },
+    /// An iterative solution came to a standstill.
+    #[error("relative residual {residual:.3e} after {iterations} iterations of GMRES, wanted below {limit:.1e}")]
+    Stalled {
+        /// Iterations.
+        iterations: usize,
+        /// `|b - A x| / |b|` \[-\].
+        residual: f64,
+        /// Largest useful one \[-\].
+        limit: f64,
+    },
 }
 
 /// The operand a [`LinearError`] speaks of.
@@ -123,6 +133,7 @@ impl LinearError {
                 | Self::NonFinite { .. }
                 | Self::NonFiniteInput { .. }
                 | Self::ResidualTooLarge { .. }
+                | Self::Stalled { .. }
         )
     }
 }

@@ -14,6 +14,7 @@ mod block_plan;
 mod dissection;
 mod error;
 mod fill;
+mod gmres;
 mod graph;
 mod kernel;
 mod ldlt;
@@ -34,6 +35,7 @@ mod tests;
 
 pub use error::{LinearError, Operand};
 pub use fill::FillEstimate;
+pub use gmres::{Gmres, GmresReport, LinearOperator};
 pub use options::{AnalysisReport, FactorReport, Method, SolveReport, SolverOptions};
 pub use ordering::{Candidate, Ordering};
 pub use pattern::{SparsePattern, Storage};

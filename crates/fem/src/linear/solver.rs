@@ -175,6 +175,30 @@ impl LinearSolver {
         Ok(report)
     }
 
+    /// `A x` with the values last factorised.
+    ///
+    /// # Errors
+    /// [`LinearError::Length`].
+    pub fn multiply(&self, x: &[f64], product: &mut [f64]) -> Result<(), LinearError> {
+        self.pattern.multiply(&self.values, x, product)
+    }
+
+    /// As [`LinearSolver::solve`], without refinement and its checks: a preconditioner.
+    ///
+    /// # Errors
+    /// [`LinearError::NotFactorised`], [`LinearError::Length`].
+    pub fn solve_once(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<(), LinearError> {
+        if !self.factorised {
+            return Err(LinearError::NotFactorised);
+        }
+        expect_length(Operand::RightHandSide, self.pattern.n(), rhs.len())?;
+        expect_length(Operand::Solution, self.pattern.n(), solution.len())?;
+        self.residual.copy_from_slice(rhs);
+        self.apply_inverse();
+        solution.copy_from_slice(&self.residual);
+        Ok(())
+    }
+
     /// Iterative refinement in the working precision; a step that worsens the residual is undone.
     fn refine(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearError> {
         let first_residual = self.form_residual(rhs, solution)?;

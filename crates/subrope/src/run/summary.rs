@@ -145,6 +145,8 @@ pub struct CountSummary {
     pub cutbacks: usize,
     /// Factorisations.
     pub factorisations: usize,
+    /// Iterations of GMRES.
+    pub linear_iterations: usize,
     /// Rounds in which an augmented Lagrangian moved its multipliers.
     pub augmentations: usize,
     /// Patterns made anew because surfaces touched elsewhere.
@@ -298,6 +300,7 @@ fn counts(model: &RopeModel) -> CountSummary {
         iterations: t.iterations,
         cutbacks: t.cutbacks,
         factorisations: t.factorisations,
+        linear_iterations: t.linear_iterations,
         augmentations: t.augmentations,
         searches: t.searches,
         unstable_increments: t.unstable_increments,
