@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::{
-    Analysis, Control, IncrementRecord, Increments, Load, Model, NewtonOptions, Observer, Prescription, Step, StepLoad,
+    Analysis, Control, IncrementRecord, Increments, Load, LoadBefore, Model, NewtonOptions, Observer, Prescription, Step, StepLoad,
     Totals,
 };
 use subrope_fem::kinematics::{Kinematics, NodeRule, Section};
@@ -154,7 +154,7 @@ impl StepBuilder<'_> {
     pub fn load(mut self, index: usize, k: u32, from: f64, to: f64) -> Self {
         let coordinate = self.kinematics.points()[index].first + k;
         let load = Load { nodal: Vec::new(), coordinates: vec![(coordinate, 1.0)] };
-        let path = Arc::new(move |fraction: f64, _: f64| from + (to - from) * fraction);
+        let path = Arc::new(move |fraction: f64, _: LoadBefore| from + (to - from) * fraction);
         self.step.loads.push(StepLoad { load, path });
         self
     }

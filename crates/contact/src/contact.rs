@@ -329,6 +329,8 @@ fn points(surface: &Surface, positions: &[Vector3<f64>], count: [usize; 2]) -> V
                     area,
                     overlap: 0.0,
                     hint: None,
+                    frozen: 0.0,
+                    pulling: 0.0,
                     multiplier: 0.0,
                     committed_multiplier: 0.0,
                     old: History::default(),
@@ -387,7 +389,15 @@ impl Contribution for Contact {
     }
 
     fn has_potential(&self) -> bool {
-        self.options.friction == 0.0
+        true
+    }
+
+    fn freeze(&mut self) -> f64 {
+        if self.options.friction == 0.0 {
+            return 0.0;
+        }
+        let options = &self.options;
+        self.points.iter_mut().map(|p| p.area * p.freeze(options)).sum()
     }
 
     fn is_intermittent(&self) -> bool {
@@ -511,6 +521,7 @@ impl Contact {
         for point in &mut self.points[patch * self.per_patch..(patch + 1) * self.per_patch] {
             let x = combine(&point.own, &nodal);
             let Some(foot) = point.hint.or(point.old.place).and_then(|hint| project(&now, &x, hint)) else {
+                point.pulling = 0.0;
                 point.new = History { place: None, gap: f64::INFINITY, ..point.old };
                 (point.new.pressure, point.new.traction) = (0.0, Vector3::zeros());
                 continue;

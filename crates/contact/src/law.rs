@@ -12,6 +12,14 @@ pub fn pressure(multiplier: f64, penalty: f64, gap: f64) -> (f64, f64) {
     if p > 0.0 { (p, -penalty) } else { (0.0, 0.0) }
 }
 
+/// Potential of friction \[mJ/mm^2\] whose trial traction is `trial` and whose limit does not follow the pressure: `T^2/(2
+/// eps)` up to the limit, straight beyond.
+#[must_use]
+pub fn friction_potential(trial: f64, limit: f64, penalty: f64) -> f64 {
+    let stuck = trial.min(limit);
+    stuck * (trial - 0.5 * stuck) / penalty
+}
+
 /// What friction needs to know of the committed state: all vectors stand in the committed configuration, so that a rigid
 /// motion of the pair slips nothing.
 #[derive(Clone, Debug)]

@@ -46,6 +46,10 @@ pub struct Point {
     pub multiplier: f64,
     /// Multiplier of the committed state \[MPa\].
     pub committed_multiplier: f64,
+    /// Pressure that the limit of friction is taken from in the potential \[MPa\].
+    pub frozen: f64,
+    /// Magnitude of the trial traction at the last evaluation \[MPa\].
+    pub pulling: f64,
     /// Committed state.
     pub old: History,
     /// Trial state.
@@ -115,6 +119,7 @@ impl Point {
         let mut pressure = law::pressure(self.multiplier, options.penalty, gap);
         let (p, _) = pressure;
         self.hint = Some(foot.place);
+        self.pulling = 0.0;
         self.new = History { place: Some(foot.place), gap, pressure: p, ..History::default() };
         (self.new.slip, self.new.work) = (self.old.slip, self.old.work);
         let mean = 0.5 * (self.old.pressure + p);
@@ -136,7 +141,8 @@ impl Point {
         let friction = (options.friction > 0.0).then(|| self.slide(foot, committed, options, pressure));
         if let Some(f) = &friction {
             energies.stored += f.stored;
-            energies.potential += f.stored;
+            self.pulling = f.magnitude + options.tangential_penalty * f.slipped;
+            energies.potential += self.friction_potential(options);
             energies.friction = options.friction * mean * f.slipped;
             self.new.elastic = f.elastic;
             self.new.elastic_length = f.magnitude / options.tangential_penalty;
@@ -160,6 +166,18 @@ impl Point {
             slip.share = share(self.old.gap, self.old.pressure, self.new.gap);
         }
         law::friction(&slip, &foot.local.metric(), options.tangential_penalty, options.friction, pressure)
+    }
+
+    fn friction_potential(&self, options: &ContactOptions) -> f64 {
+        law::friction_potential(self.pulling, options.friction * self.frozen, options.tangential_penalty)
+    }
+
+    /// Takes the limit of friction in the potential from the present pressure; answers by how much the potential changes
+    /// \[mJ/mm^2\].
+    pub fn freeze(&mut self, options: &ContactOptions) -> f64 {
+        let before = self.friction_potential(options);
+        self.frozen = self.new.pressure;
+        self.friction_potential(options) - before
     }
 
     /// The trial becomes the committed state.

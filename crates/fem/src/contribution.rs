@@ -125,8 +125,14 @@ pub trait Contribution: Send {
         false
     }
 
-    /// Whether its forces derive from an incremental potential.
+    /// Whether its forces derive from an incremental potential once [`Contribution::freeze`] has fixed what does not.
     fn has_potential(&self) -> bool;
+
+    /// Fixes, at the trial evaluated last, what its potential takes as given: the limit of friction, which follows the
+    /// pressure. Forces at that trial are then those of the potential. Answers by how much the potential has changed.
+    fn freeze(&mut self) -> f64 {
+        0.0
+    }
 
     /// Evaluates at a trial configuration, leaving the committed state alone.
     ///

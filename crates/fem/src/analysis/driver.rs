@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::newton::Attempt;
 use super::record::{Control, IncrementRecord, Observer, Phase, Phases, Totals};
 use super::rigid::rigid_motions;
-use super::step::{Increments, NewtonOptions, Step};
+use super::step::{Increments, LoadBefore, NewtonOptions, Step};
 use super::workspace::Workspace;
 use crate::FemError;
 use crate::assembly::System;
@@ -39,6 +39,10 @@ pub struct Analysis {
     pub(super) largest_reference: f64,
     /// Norm of diagonal stiffness times displacement at the last tangent \[N\].
     pub(super) stiffness_scale: f64,
+    /// Largest load and reaction together of every coordinate so far.
+    pub(super) peak: Vec<f64>,
+    /// Loads and peaks of the coordinates at the start of the step.
+    pub(super) before: Vec<LoadBefore>,
     /// Coordinates at the start of the step.
     pub(super) step_start: Vec<f64>,
     /// Change of the coordinates over the last increment and its length.
@@ -82,6 +86,8 @@ impl Analysis {
             released: Vec::new(),
             largest_reference: 0.0,
             stiffness_scale: 0.0,
+            peak: vec![0.0; coordinates],
+            before: vec![LoadBefore::default(); coordinates],
             step_start: vec![0.0; coordinates],
             last_change: vec![0.0; coordinates],
             last_length: 0.0,
@@ -186,6 +192,9 @@ impl Analysis {
         // A new step turns elsewhere: nothing to continue.
         self.last_length = 0.0;
         self.step_start.copy_from_slice(&self.q);
+        for ((before, &load), &peak) in self.before.iter_mut().zip(&self.coordinate_load).zip(&self.peak) {
+            *before = LoadBefore { load, peak };
+        }
         let mut division = Division::new(step);
         let mut attempt = 1;
         while division.done < 1.0 {

@@ -1,13 +1,10 @@
 //! How far to go along a correction.
 //!
-//! Contacts make the residual bend sharply where a point closes or begins to slide: full corrections then pass bends at
-//! which a residual that must fall every time would stop. With contacts it may rise, as long as it stays below the
-//! largest of the last few (Grippo, Lampariello and Lucidi 1986).
-//!
 //! Where the update derives from an incremental potential (no pressure-dependent friction) the potential must fall
 //! (Armijo); elsewhere the residual must, in norm or along the correction. A full step that halves the residual is taken
 //! at once. When points switch between sticking and sliding, plain Newton can cycle for ever and shorter increments do
-//! not help: the potential ends the cycle.
+//! not help: the potential ends the cycle. Friction of contacts, whose limit follows the pressure, has one too as long as that
+//! limit is kept from the start of the search.
 
 use super::driver::Analysis;
 use super::workspace::Workspace;
@@ -18,8 +15,6 @@ use crate::contribution::Request;
 const ARMIJO: f64 = 1e-4;
 /// Most trial lengths.
 const TRIALS: usize = 8;
-/// Iterates whose largest residual is the limit with contacts.
-const MEMORY: usize = 5;
 /// Rounding of a sum of energies, over its size.
 const ENERGY_NOISE: f64 = 1e-13;
 
@@ -29,8 +24,6 @@ struct Comparison {
     slope: f64,
     base_norm: f64,
     base_potential: f64,
-    /// Largest norm of the last few iterates, where rising is allowed.
-    ceiling: f64,
 }
 
 /// Whether an error is not helped by a shorter correction.
@@ -45,8 +38,7 @@ impl Analysis {
             length: 1.0,
             slope,
             base_norm: work.base.norm,
-            base_potential: work.base.potential,
-            ceiling: self.ceiling(work),
+            base_potential: work.base.potential + self.freeze(),
         };
         let mut best: Option<(f64, f64)> = None;
         for trial in 0..TRIALS {
@@ -95,7 +87,7 @@ impl Analysis {
 
     fn acceptable(&self, search: &Comparison, work: &Workspace) -> bool {
         let trial = &work.trial;
-        if trial.norm <= (0.5 * search.base_norm).max(search.ceiling) {
+        if trial.norm <= 0.5 * search.base_norm {
             return true;
         }
         if self.has_potential() && search.slope < 0.0 {
@@ -119,14 +111,9 @@ impl Analysis {
         if guess.is_finite() { guess.clamp(0.1 * s, 0.5 * s) } else { 0.5 * s }
     }
 
-    /// Largest norm among the last iterates of a model with contacts; the present one joins them.
-    fn ceiling(&self, work: &mut Workspace) -> f64 {
-        if !self.model.contributions.iter().any(|c| c.has_products()) {
-            return 0.0;
-        }
-        work.norms.push(work.base.norm);
-        let first = work.norms.len().saturating_sub(MEMORY);
-        work.norms[first..].iter().fold(0.0, |most: f64, v| most.max(*v))
+    /// Makes the potential fit for a search from the base; answers by how much it changes there.
+    fn freeze(&mut self) -> f64 {
+        self.model.contributions.iter_mut().map(|c| c.freeze()).sum()
     }
 
     fn has_potential(&self) -> bool {

@@ -12,5 +12,5 @@ mod workspace;
 pub use driver::{Analysis, Model};
 pub use record::{Control, IncrementRecord, Observer, Phase, Phases, Silent, Totals};
 pub use rigid::rigid_motions;
-pub use step::{Increments, Load, NewtonOptions, Path, Prescription, Step, StepLoad};
+pub use step::{Increments, Load, LoadBefore, LoadPath, NewtonOptions, Path, Prescription, Step, StepLoad};
 pub use viscous::Viscous;

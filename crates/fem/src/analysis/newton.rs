@@ -2,7 +2,7 @@
 
 use super::driver::Analysis;
 use super::record::{IncrementRecord, Phase};
-use super::step::{Prescription, Step};
+use super::step::{LoadBefore, Prescription, Step};
 use super::workspace::{Iterate, Workspace};
 use crate::FemError;
 use crate::assembly::{Evaluation, Jump};
@@ -43,7 +43,7 @@ impl Analysis {
     ) -> Result<(), FemError> {
         self.search(None)?;
         let mut work = std::mem::take(&mut self.work);
-        work.target.fill(step, attempt, &self.step_start, &self.released);
+        work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
         let mut outcome = self.iterate(&mut work, attempt, record);
         for _ in 0..SEARCHES {
             if !matches!(outcome, Err(FemError::SearchOutdated)) {
@@ -69,7 +69,6 @@ impl Analysis {
     ) -> Result<(), FemError> {
         self.model.contributions.iter_mut().for_each(|c| c.revert());
         self.first_iterate(work, attempt, record)?;
-        work.norms.clear();
         let mut largest_energy = 0.0_f64;
         let mut energy = 0.0;
         // Iterations and residuals before this round of multipliers.
@@ -259,6 +258,10 @@ impl Analysis {
             external +=
                 (load + if self.prescribed[c] { 0.5 * (self.reaction[c] + new.residual[c]) } else { 0.0 }) * change;
             self.last_change[c] = change;
+            let acting = target.coordinates[c] + if self.prescribed[c] { new.residual[c] } else { 0.0 };
+            if acting.abs() > self.peak[c].abs() {
+                self.peak[c] = acting;
+            }
         }
         for i in 0..self.displacement.len() {
             let load = 0.5 * (self.nodal_load[i] + target.nodal[i]);
@@ -311,7 +314,14 @@ fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
 
 impl super::workspace::Target {
     /// Loads and prescribed values at the end of an attempt.
-    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64], released: &[(u32, f64)]) {
+    fn fill(
+        &mut self,
+        step: &Step,
+        attempt: Attempt,
+        start: &[f64],
+        released: &[(u32, f64)],
+        before: &[LoadBefore],
+    ) {
         self.prescribed.clear();
         let value = |p: &Prescription| (p.coordinate, (p.path)(attempt.to, start[p.coordinate as usize]));
         self.prescribed.extend(step.prescriptions.iter().map(value));
@@ -322,7 +332,8 @@ impl super::workspace::Target {
             self.coordinates[c as usize] += (1.0 - attempt.to) * reaction;
         }
         for load in &step.loads {
-            let factor = (load.path)(attempt.to, 0.0);
+            let own = load.load.coordinates.first().map(|(c, _)| before[*c as usize]).unwrap_or_default();
+            let factor = (load.path)(attempt.to, own);
             for (node, force) in &load.load.nodal {
                 for k in 0..3 {
                     self.nodal[3 * *node as usize + k] += factor * force[k];

@@ -7,6 +7,18 @@ use nalgebra::Vector3;
 /// A value as a function of the fraction of a step, 0 to 1, and of the value reached before the step.
 pub type Path = Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
+/// The factor of a load as a function of the fraction of a step and of what acted before.
+pub type LoadPath = Arc<dyn Fn(f64, LoadBefore) -> f64 + Send + Sync>;
+
+/// Forces on the coordinate of a load at the start of a step; zero for loads on nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoadBefore {
+    /// Load at the start of the step \[N\].
+    pub load: f64,
+    /// Load and reaction together where they were largest so far \[N\].
+    pub peak: f64,
+}
+
 /// The motion of one coordinate.
 #[derive(Clone)]
 pub struct Prescription {
@@ -31,7 +43,7 @@ pub struct StepLoad {
     /// The load at factor one.
     pub load: Load,
     /// Its factor over the step.
-    pub path: Path,
+    pub path: LoadPath,
 }
 
 /// How a step is divided.

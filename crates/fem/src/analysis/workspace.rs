@@ -48,8 +48,6 @@ pub struct Target {
 /// Buffers of the iteration.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    /// Norms of the residual in this attempt, for the line search.
-    pub norms: Vec<f64>,
     /// Where the iteration stands.
     pub base: Iterate,
     /// Where it tries to go.
@@ -79,7 +77,6 @@ impl Workspace {
             rhs: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
             jump: vec![0.0; 3 * nodes],
-            norms: Vec::new(),
         }
     }
 }

@@ -20,7 +20,7 @@ use subrope_fem::{Contribution, FemError};
 use subrope_io::Ignored;
 
 use crate::run::RunError;
-use crate::scene::{End, EndKind, LineSearch, Program, Scene, SceneFile};
+use crate::scene::{End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
 
 /// A scene made ready to solve.
 pub struct RopeModel {
@@ -28,12 +28,35 @@ pub struct RopeModel {
     pub mesh: MeshModel,
     /// The model and its state.
     pub analysis: Analysis,
-    /// Its steps.
+    /// Its steps; every half cycle is one.
     pub steps: Vec<Step>,
+    /// Which steps are half cycles, and of what.
+    pub half_cycles: Vec<Option<CycleStep>>,
     /// Keywords of a deck that were not read.
     pub ignored: Vec<Ignored>,
     /// Faces of every contact, in the order of the contributions.
     pub contact_cells: Vec<ContactCells>,
+}
+
+/// A step that is a half cycle of tension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleStep {
+    /// Which one.
+    pub half: HalfCycle,
+    /// The reference point that moves.
+    pub point: usize,
+    /// Length that elongations refer to \[mm\].
+    pub length: Option<f64>,
+    /// Step of the scene that it belongs to.
+    pub source: usize,
+}
+
+impl CycleStep {
+    fn of(scene: &Scene, step: &ProgramStep, kinematics: &Kinematics) -> Option<Self> {
+        let cycles = scene.step[step.source].cycles.as_ref()?;
+        let point = kinematics.point_index(&cycles.point)?;
+        Some(Self { half: step.half_cycle?, point, length: cycles.length.or(scene.length()), source: step.source })
+    }
 }
 
 impl RopeModel {
@@ -70,11 +93,13 @@ impl RopeModel {
         if let Some(stabilisation) = &scene.solver.stabilisation {
             contributions.push(Box::new(Viscous::new(stabilisation.viscosity, &mesh.node_volumes()?)));
         }
-        let steps = steps::steps(scene, &Program::new(scene), &mesh, &kinematics)?;
+        let program = Program::new(scene);
+        let steps = steps::steps(scene, &program, &mesh, &kinematics)?;
+        let half_cycles = program.steps.iter().map(|s| CycleStep::of(scene, s, &kinematics)).collect();
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
         let model = Model { kinematics, contributions };
         let analysis = Analysis::new(model, newton(scene), solver_options(), threads);
-        Ok(Self { mesh, analysis, steps, ignored, contact_cells })
+        Ok(Self { mesh, analysis, steps, half_cycles, ignored, contact_cells })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use subrope_fem::analysis::{Increments, Prescription, Step, StepLoad};
+use subrope_fem::analysis::{Increments, LoadBefore, Prescription, Step, StepLoad};
 use subrope_fem::kinematics::{Kinematics, NodeRule};
 
 use super::{MeshModel, ModelError, loads};
@@ -33,7 +33,14 @@ fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinemat
         let path = load.path.clone();
         loads.push(StepLoad {
             load: loads::unit_load(&step.name, &load.target, load.component, mesh, kinematics)?,
-            path: Arc::new(move |fraction, _| path.value(fraction, 0.0)),
+            path: if load.of_peak {
+                Arc::new(move |fraction, before: LoadBefore| {
+                    let start = if before.peak == 0.0 { 0.0 } else { before.load / before.peak };
+                    path.value(fraction, start) * before.peak
+                })
+            } else {
+                Arc::new(move |fraction, before: LoadBefore| path.value(fraction, before.load))
+            },
         });
     }
     let increments = match step.increments {

@@ -2,6 +2,7 @@
 
 mod columns;
 mod contacts;
+mod cycles;
 mod error;
 #[cfg(feature = "hdf5")]
 mod fields;
@@ -10,6 +11,7 @@ mod sections;
 mod session;
 mod summary;
 
+pub use cycles::CycleRow;
 pub use error::RunError;
 pub(crate) use error::output_advice;
 pub use findings::{Findings, Mode, ModeFinding, Zone};

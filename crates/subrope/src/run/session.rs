@@ -9,10 +9,11 @@ use subrope_fem::FemError;
 use subrope_fem::analysis::{Analysis, Control, IncrementRecord};
 use subrope_io::{HistoryWriter, IoError, write_json};
 
+use super::cycles::CycleTable;
 use super::summary::{Status, Summary};
 use super::{RunError, RunFiles, RunOutcome, columns};
 use crate::Error;
-use crate::model::{ContactCells, MeshModel, RopeModel};
+use crate::model::{ContactCells, CycleStep, MeshModel, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
 use crate::scene::SceneFile;
 
@@ -35,6 +36,7 @@ pub struct Session<'a> {
 /// Open files.
 struct Output {
     history: HistoryWriter,
+    cycles: CycleTable,
     #[cfg(feature = "hdf5")]
     results: ResultWriter,
     #[cfg(feature = "hdf5")]
@@ -79,7 +81,7 @@ impl<'a> Session<'a> {
     ) -> Result<RunOutcome, Error> {
         let Self { file, files, output, started } = self;
         let count = model.steps.len();
-        let RopeModel { mesh, contact_cells, analysis, steps, .. } = &mut *model;
+        let RopeModel { mesh, contact_cells, analysis, steps, half_cycles, .. } = &mut *model;
         let scenery = Scenery { mesh, cells: contact_cells };
         let mut watch = Watch {
             output,
@@ -90,12 +92,15 @@ impl<'a> Session<'a> {
             attempt_start: started,
             cutbacks: 0,
             stable: true,
+            half_cycle: None,
         };
         let mut outcome = Ok(());
         for (index, step) in steps.iter().enumerate() {
             let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
             watch.observer.on_step(&start);
             watch.attempt_start = Instant::now();
+            watch.half_cycle = half_cycles[index];
+            watch.begin_step(analysis);
             outcome = analysis.run_step(step, &mut watch);
             if outcome.is_ok() {
                 outcome = watch.end_step(analysis);
@@ -113,9 +118,10 @@ impl<'a> Session<'a> {
                 .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
         }
         let interrupted = matches!(outcome, Err(FemError::Interrupted));
+        let cycles = watch.output.cycles.rows().to_vec();
         let closed = watch.output.close(scenery, analysis);
         let status = Status::of(&outcome);
-        let summary = Summary::new(file, model, status, started.elapsed().as_secs_f64());
+        let summary = Summary::new(file, model, status, &cycles, started.elapsed().as_secs_f64());
         if let Some(error) = failure {
             return Err(RunError::Output(error).into());
         }
@@ -171,6 +177,7 @@ impl Output {
         let path = files.folder.join(RESULTS);
         let mut out = Self {
             history: HistoryWriter::create(&files.history, &columns::columns(model))?,
+            cycles: CycleTable::open(model, &files.folder)?,
             results: ResultWriter::create(&path, &model.mesh.mesh, &specs, &provenance, options)?,
             arrays,
             every: scene.output.every,
@@ -191,7 +198,10 @@ impl Output {
 
     #[cfg(not(feature = "hdf5"))]
     fn open(_: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
-        Ok(Self { history: HistoryWriter::create(&files.history, &columns::columns(model))? })
+        Ok(Self {
+            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
+            cycles: CycleTable::open(model, &files.folder)?,
+        })
     }
 
     fn increment(
@@ -200,16 +210,25 @@ impl Output {
         analysis: &Analysis,
         record: &IncrementRecord,
         cutbacks: usize,
+        frames: bool,
     ) -> Result<(), IoError> {
         self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
         #[cfg(feature = "hdf5")]
         {
             self.waiting += 1;
-            if self.waiting >= self.every {
+            if frames && self.waiting >= self.every {
                 self.frame(scenery, analysis)?;
             }
         }
         Ok(())
+    }
+
+    /// Leaves out the frame of a step.
+    fn skip_frame(&mut self) {
+        #[cfg(feature = "hdf5")]
+        {
+            self.waiting = 0;
+        }
     }
 
     /// Writes what is still waiting.
@@ -270,6 +289,8 @@ struct Watch<'a> {
     cutbacks: usize,
     /// Whether the last converged tangent had no negative pivot.
     stable: bool,
+    /// The half cycle that runs.
+    half_cycle: Option<CycleStep>,
 }
 
 impl Watch<'_> {
@@ -281,7 +302,21 @@ impl Watch<'_> {
         })
     }
 
+    fn begin_step(&mut self, analysis: &Analysis) {
+        if let Some(step) = &self.half_cycle {
+            self.output.cycles.begin(step, analysis);
+        }
+    }
+
     fn end_step(&mut self, analysis: &Analysis) -> Result<(), FemError> {
+        if let Some(step) = self.half_cycle {
+            let result = self.output.cycles.end(&step, analysis);
+            self.keep(result)?;
+            if !step.half.written {
+                self.output.skip_frame();
+                return Ok(());
+            }
+        }
         let result = self.output.end_step(self.scenery, analysis);
         self.keep(result)
     }
@@ -319,7 +354,9 @@ impl Watch<'_> {
 
 impl subrope_fem::analysis::Observer for Watch<'_> {
     fn converged(&mut self, analysis: &Analysis, record: &IncrementRecord) -> Result<Control, FemError> {
-        let result = self.output.increment(self.scenery, analysis, record, self.cutbacks);
+        // In cycles only their ends are written.
+        let frames = self.half_cycle.is_none();
+        let result = self.output.increment(self.scenery, analysis, record, self.cutbacks, frames);
         self.cutbacks = 0;
         self.keep(result)?;
         self.tell(record, Outcome::Converged);

@@ -7,6 +7,7 @@ use subrope_fem::FemError;
 use subrope_fem::analysis::Phase;
 
 use super::contacts::{self, PairSummary};
+use super::cycles::CycleRow;
 use super::findings::Findings;
 use super::session::integration_points;
 use crate::model::RopeModel;
@@ -53,6 +54,9 @@ pub struct Summary {
     /// Force along z at the high end that each strand of a rope carries.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub strand_forces_n: Vec<f64>,
+    /// Cycle by cycle, where there are cycles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cycles: Vec<CycleRow>,
     /// Findings on a bent strand, where there is one.
     pub findings: Option<Findings>,
     /// Sizes.
@@ -171,7 +175,13 @@ pub struct SecondsSummary {
 }
 
 impl Summary {
-    pub(super) fn new(file: &SceneFile, model: &RopeModel, status: Status, seconds: f64) -> Self {
+    pub(super) fn new(
+        file: &SceneFile,
+        model: &RopeModel,
+        status: Status,
+        cycles: &[CycleRow],
+        seconds: f64,
+    ) -> Self {
         let analysis = &model.analysis;
         let mesh = &model.mesh.mesh;
         Self {
@@ -182,6 +192,7 @@ impl Summary {
             energies: energies(model),
             contacts: contacts::summaries(analysis),
             strand_forces_n: contacts::strand_forces(&model.mesh, analysis),
+            cycles: cycles.to_vec(),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
             size: sizes(model),
             counts: counts(model),

@@ -28,7 +28,7 @@ pub struct Contact {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub penalty: Option<f64>,
     /// Tangential over normal penalty \[-\].
-    #[serde(default = "one")]
+    #[serde(default = "tenth")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub tangential_ratio: f64,
     /// Largest penetration over the radius that "augmented" leaves \[-\].
@@ -50,8 +50,8 @@ pub struct Contact {
     pub ramp: Option<f64>,
 }
 
-fn one() -> f64 {
-    1.0
+fn tenth() -> f64 {
+    0.1
 }
 
 fn thousandth() -> f64 {

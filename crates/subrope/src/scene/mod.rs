@@ -9,6 +9,7 @@
 mod boundary;
 mod check;
 mod contact;
+mod cycles;
 mod deck;
 mod element;
 mod error;
@@ -31,6 +32,7 @@ pub(crate) use check::check_law;
 
 pub use boundary::{Constraint, ConstraintComponents, End, EndKind};
 pub use contact::{Contact, ContactMethod, ContactSmoothing, ContactTangent, Rigid, RigidShape};
+pub use cycles::HalfCycle;
 pub use deck::{Deck, Fibres, HelixFibres};
 pub use element::{Element, Formulation};
 pub use error::SceneError;
@@ -45,7 +47,7 @@ pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
 pub use rope::{Core, Rope, YarnSense, Yarns};
 pub use solver::{LineSearch, Solver, Stabilisation};
-pub use step::{
+pub use step::{CycleControl, Cycles, Waveform,
     Bend, BendAxis, BendEnds, Distribution, Incrementation, Increments, NodalForce, PointForce, Prescribe, Step,
     Tension, Traction,
 };

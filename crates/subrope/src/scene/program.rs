@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Scene;
+use super::cycles::{HalfCycle, parts};
 use super::expand::expand;
 use super::prescription::{Component, Prescription, Ramp};
 use super::step::{Distribution, Incrementation, Step};
@@ -18,6 +19,10 @@ pub struct Program {
 /// One step in full.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramStep {
+    /// Which step of the scene it comes from.
+    pub source: usize,
+    /// The half cycle that it is.
+    pub half_cycle: Option<HalfCycle>,
     /// Name.
     pub name: String,
     /// Length of the step \[s\].
@@ -149,8 +154,10 @@ pub struct Load {
     pub target: LoadTarget,
     /// The component of motion it works on (`Rx` to `Rz`: moments).
     pub component: Component,
-    /// History; the start is always known.
+    /// History; without a start it begins with what acts.
     pub path: Path,
+    /// Whether its values are fractions of the largest force so far.
+    pub of_peak: bool,
 }
 
 /// How a component stands between two steps.
@@ -171,8 +178,9 @@ impl Program {
         let mut standing = initial_standing(scene);
         let mut loads = BTreeMap::new();
         let mut steps: Vec<ProgramStep> = Vec::with_capacity(scene.step.len());
-        for step in &scene.step {
-            let step = expand(step, length);
+        let parts = scene.step.iter().enumerate().flat_map(|(i, s)| parts(s).into_iter().map(move |part| (i, part)));
+        for (source, part) in parts {
+            let step = expand(&part.step, length);
             let mut motions = standing_motions(&standing);
             if steps.is_empty() {
                 first_constraints(scene, &mut motions);
@@ -180,10 +188,12 @@ impl Program {
             prescribe(&step, &mut motions, &standing);
             settle(&motions, &mut standing);
             steps.push(ProgramStep {
+                source,
+                half_cycle: part.half,
                 name: step.name.clone(),
                 duration: step.duration,
                 increments: step.increments.resolve(),
-                loads: load_step(&step, &mut loads),
+                loads: load_step(&step, part.of_peak, &mut loads),
                 motions: motions
                     .into_iter()
                     .map(|((target, component), path)| Motion { target, component, path })
@@ -289,17 +299,33 @@ fn held_arc(path: &Path, before: Option<&Standing>) -> Option<f64> {
 type LoadKey = (LoadTarget, Component);
 
 /// The loads of a step: those it gives, and those that stay.
-fn load_step(step: &Step, standing: &mut BTreeMap<LoadKey, f64>) -> Vec<Load> {
+fn load_step(
+    step: &Step,
+    of_peak: Option<(String, Ramp)>,
+    standing: &mut BTreeMap<LoadKey, Option<f64>>,
+) -> Vec<Load> {
     let mut paths: BTreeMap<LoadKey, Path> =
-        standing.iter().map(|(key, value)| (key.clone(), Path::held(Some(*value)))).collect();
+        standing.iter().map(|(key, value)| (key.clone(), Path::held(*value))).collect();
     for (key, ramp) in given_loads(step) {
-        let start = Some(standing.get(&key).copied().unwrap_or(0.0));
+        let start = standing.get(&key).copied().unwrap_or(Some(0.0));
         paths.insert(key, path(ramp, 1.0, start));
     }
     for (key, path) in &paths {
-        standing.insert(key.clone(), path.end().unwrap_or(0.0));
+        standing.insert(key.clone(), path.end());
     }
-    paths.into_iter().map(|((target, component), path)| Load { target, component, path }).collect()
+    let peak_key = of_peak.map(|(point, ramp)| {
+        let key = (LoadTarget::Point(point), Component::Uz);
+        // In newtons it is known when it has been reached.
+        standing.insert(key.clone(), None);
+        paths.insert(key.clone(), path(&ramp, 1.0, None));
+        key
+    });
+    let whole = |((target, component), path)| {
+        let key = (target, component);
+        let of_peak = peak_key.as_ref() == Some(&key);
+        Load { target: key.0, component, path, of_peak }
+    };
+    paths.into_iter().map(whole).collect()
 }
 
 /// All loads that a step gives, with what they act on.

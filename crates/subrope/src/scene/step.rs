@@ -26,6 +26,9 @@ pub struct Step {
     /// Tension and twist of one end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tension: Option<Tension>,
+    /// Tension of one end going to and fro.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<Cycles>,
     /// Motions of reference points and of constraints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub prescribe: Vec<Prescribe>,
@@ -189,6 +192,66 @@ pub struct Tension {
     /// Reference point of the end that moves.
     #[serde(default = "end_b")]
     pub point: String,
+}
+
+/// Cycles of tension: the end `point` goes to `low` and back to `high`, `count` times; its other components stay. Every
+/// half cycle is a step of its own, named after this one; `duration` covers them all and `increments` each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cycles {
+    /// Number of cycles \[-\].
+    #[schemars(range(min = 1, max = 100_000))]
+    pub count: usize,
+    /// What `low` and `high` are: fractions of the largest tension so far ("peak"), a "force" \[N\], or an "elongation"
+    /// as a fraction of the length.
+    #[serde(default)]
+    pub of: CycleControl,
+    /// Lower end of the cycle.
+    pub low: f64,
+    /// Upper end of the cycle.
+    pub high: f64,
+    /// Course of a half cycle: "triangle" (straight) or "sine".
+    #[serde(default)]
+    pub waveform: Waveform,
+    /// Fields are written at both ends of every n-th cycle and of the last \[-\].
+    #[serde(default = "one")]
+    #[schemars(range(min = 1))]
+    pub every: usize,
+    /// Length that an elongation refers to \[mm\]; the strand's or the rope's when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length: Option<f64>,
+    /// Reference point of the end that moves.
+    #[serde(default = "end_b")]
+    pub point: String,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// What a cycle goes between.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CycleControl {
+    /// Fractions of the largest tension so far.
+    #[default]
+    Peak,
+    /// Forces \[N\].
+    Force,
+    /// Elongations, fractions of the length.
+    Elongation,
+}
+
+/// Course of a half cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Waveform {
+    /// Straight.
+    #[default]
+    Triangle,
+    /// Half a cosine in eight straight pieces.
+    Sine,
 }
 
 /// Motion of one reference point (`point`) or of one constraint (`constraint`): each component a value at the end of

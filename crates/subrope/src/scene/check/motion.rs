@@ -1,8 +1,8 @@
 //! Checks of what steps move.
 
-use super::Checker;
+use super::{Checker, top};
 use crate::document::{Location, ProblemKind};
-use crate::scene::step::{Bend, BendEnds, Prescribe, Step, Tension};
+use crate::scene::step::{Bend, BendEnds, CycleControl, Cycles, Prescribe, Step, Tension};
 use crate::scene::{BendAxis, Component, EndKind, Prescription, Ramp};
 
 /// Something moved in a step: its name, its component and the place that says so.
@@ -20,6 +20,9 @@ impl Checker<'_> {
         }
         if let Some(tension) = &step.tension {
             self.tension(&at.at("tension"), tension, &mut moved);
+        }
+        if let Some(cycles) = &step.cycles {
+            self.cycles(&at.at("cycles"), cycles, &mut moved);
         }
         for (index, entry) in step.prescribe.iter().enumerate() {
             self.prescribe(&at.at("prescribe").at(index), entry, &mut moved);
@@ -98,6 +101,33 @@ impl Checker<'_> {
         if let Some(twist) = &tension.twist {
             self.prescription(&at.at("twist"), Component::Rz, twist);
             moved.push(Moved { name: &tension.point, component: Component::Rz, at: at.at("twist") });
+        }
+    }
+
+    fn cycles<'a>(&mut self, at: &Location, cycles: &'a Cycles, moved: &mut Vec<Moved<'a>>) {
+        self.point(&at.at("point"), &cycles.point);
+        moved.push(Moved { name: &cycles.point, component: Component::Uz, at: at.clone() });
+        if !(cycles.low < cycles.high) {
+            let cause = format!("reversed bounds: `low` = {} is not below `high` = {}", cycles.low, cycles.high);
+            self.inconsistent(&at.at("low"), cause, "required: low < high");
+        }
+        match cycles.of {
+            CycleControl::Peak if at == &top("step").at(0).at("cycles") => {
+                let help = "pull in a step before, or give `of` = \"force\" or \"elongation\"";
+                self.inconsistent(at, "cycles \"of\" the peak tension have no peak in the first step", help);
+            }
+            CycleControl::Peak | CycleControl::Force => {}
+            CycleControl::Elongation => {
+                for (key, value) in [("low", cycles.low), ("high", cycles.high)] {
+                    if value <= -1.0 {
+                        self.out_of_range(&at.at(key), key, value, "greater than -1 (a fraction of the length)");
+                    }
+                }
+                if cycles.length.is_none() && self.scene.length().is_none() {
+                    let help = "length that the elongation refers to (mm); only a generated strand or rope has its own";
+                    self.missing(at, "length", help);
+                }
+            }
         }
     }
 

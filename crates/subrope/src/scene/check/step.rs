@@ -19,8 +19,9 @@ impl Checker<'_> {
         // Only a scene without other faults has a program worth looking at.
         if self.problems.is_empty() {
             let program = Program::new(scene);
-            for (index, (step, resolved)) in scene.step.iter().zip(&program.steps).enumerate() {
-                self.loaded_components(&top("step").at(index), step, resolved);
+            for resolved in &program.steps {
+                let index = resolved.source;
+                self.loaded_components(&top("step").at(index), &scene.step[index], resolved);
             }
         }
     }
