@@ -195,6 +195,10 @@ impl Analysis {
         for ((before, &load), &peak) in self.before.iter_mut().zip(&self.coordinate_load).zip(&self.peak) {
             *before = LoadBefore { load, peak };
         }
+        // They act as loads from now on, also in the work of the first increment.
+        for &(c, reaction) in &self.released {
+            self.coordinate_load[c as usize] += reaction;
+        }
         let mut division = Division::new(step);
         let mut attempt = 1;
         while division.done < 1.0 {
