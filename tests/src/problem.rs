@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::{
-    Analysis, Control, IncrementRecord, Increments, Load, LoadBefore, Model, NewtonOptions, Observer, Prescription, Step, StepLoad,
-    Totals,
+    Analysis, Control, IncrementRecord, Increments, Load, LoadBefore, Model, NewtonOptions, Observer, Prescription,
+    Step, StepLoad, Totals,
 };
 use subrope_fem::kinematics::{Kinematics, NodeRule, Section};
 use subrope_fem::linear::SolverOptions;

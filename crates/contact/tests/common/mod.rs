@@ -114,8 +114,15 @@ pub fn evaluate(
     let nodes = (0..contact.element_count()).map(|e| contact.element_nodes(e).to_vec()).collect();
     let n = displacement.len();
     let mut keep = Keep { force: vec![0.0; n], product: vec![0.0; n], direction: direction.to_vec(), nodes };
-    let configuration =
-        Configuration { displacement, committed, time_increment: 1.0, time: 1.0, temperature: 293.15, predicting: false, parallel: false };
+    let configuration = Configuration {
+        displacement,
+        committed,
+        time_increment: 1.0,
+        time: 1.0,
+        temperature: 293.15,
+        predicting: false,
+        parallel: false,
+    };
     let energies = contact.assemble(&configuration, Request::Tangent, &mut keep)?;
     Ok((keep.force, keep.product, energies))
 }

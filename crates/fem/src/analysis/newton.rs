@@ -314,14 +314,7 @@ fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
 
 impl super::workspace::Target {
     /// Loads and prescribed values at the end of an attempt.
-    fn fill(
-        &mut self,
-        step: &Step,
-        attempt: Attempt,
-        start: &[f64],
-        released: &[(u32, f64)],
-        before: &[LoadBefore],
-    ) {
+    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64], released: &[(u32, f64)], before: &[LoadBefore]) {
         self.prescribed.clear();
         let value = |p: &Prescription| (p.coordinate, (p.path)(attempt.to, start[p.coordinate as usize]));
         self.prescribed.extend(step.prescriptions.iter().map(value));

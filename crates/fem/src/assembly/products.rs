@@ -47,8 +47,7 @@ impl Products {
         let start = self.equations.len();
         let places = Places::new(kinematics, ties, equations, nodes);
         self.equations.extend(places.0.iter().map(|p| p.equation));
-        let group =
-            Group { equations: start..self.equations.len(), values: self.values.len(), count: products.len() };
+        let group = Group { equations: start..self.equations.len(), values: self.values.len(), count: products.len() };
         for vector in products.iter().flat_map(|p| [p.row, p.column]) {
             self.values.extend(places.0.iter().map(|p| p.value(vector, nodes.len())));
         }
@@ -103,7 +102,9 @@ impl Places {
         };
         for (node, &global) in nodes.iter().enumerate() {
             match &kinematics.rules()[global as usize] {
-                NodeRule::Free { first } => (0..3).for_each(|k| push(first + k, node, Derivative::Component(k as usize))),
+                NodeRule::Free { first } => {
+                    (0..3).for_each(|k| push(first + k, node, Derivative::Component(k as usize)))
+                }
                 NodeRule::Tied { tie, .. } => {
                     let tie = &ties[*tie as usize];
                     tie.coordinates().for_each(|c| push(c, node, Derivative::Column(tie.column(c))));

@@ -6,7 +6,9 @@ use super::scatter::{self, Cliques, ScatterMap};
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Product, Request, Sink};
 use crate::kinematics::{Kinematics, Reduction, Tie};
-use crate::linear::{AnalysisReport, Gmres, LinearError, LinearOperator, LinearSolver, SolverOptions, SparsePattern, Storage};
+use crate::linear::{
+    AnalysisReport, Gmres, LinearError, LinearOperator, LinearSolver, SolverOptions, SparsePattern, Storage,
+};
 
 /// Pattern, scatter maps, matrix values and solver: made once per set of prescribed coordinates.
 pub struct System {
@@ -192,14 +194,6 @@ impl System {
         }
         let mut operator = Tangent { solver: &mut self.solver, products: &self.products };
         Ok(self.gmres.solve(&mut operator, rhs, x)?.iterations)
-    }
-
-    /// `K x` with the values last factorised.
-    ///
-    /// # Errors
-    /// [`FemError::Linear`].
-    pub fn multiply(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), FemError> {
-        Ok(Tangent { solver: &mut self.solver, products: &self.products }.apply(x, out)?)
     }
 
     /// Matrix values and pattern, for checks.

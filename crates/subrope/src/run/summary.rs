@@ -175,13 +175,7 @@ pub struct SecondsSummary {
 }
 
 impl Summary {
-    pub(super) fn new(
-        file: &SceneFile,
-        model: &RopeModel,
-        status: Status,
-        cycles: &[CycleRow],
-        seconds: f64,
-    ) -> Self {
+    pub(super) fn new(file: &SceneFile, model: &RopeModel, status: Status, cycles: &[CycleRow], seconds: f64) -> Self {
         let analysis = &model.analysis;
         let mesh = &model.mesh.mesh;
         Self {

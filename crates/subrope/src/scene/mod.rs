@@ -47,9 +47,9 @@ pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
 pub use rope::{Core, Rope, YarnSense, Yarns};
 pub use solver::{LineSearch, Solver, Stabilisation};
-pub use step::{CycleControl, Cycles, Waveform,
-    Bend, BendAxis, BendEnds, Distribution, Incrementation, Increments, NodalForce, PointForce, Prescribe, Step,
-    Tension, Traction,
+pub use step::{
+    Bend, BendAxis, BendEnds, CycleControl, Cycles, Distribution, Incrementation, Increments, NodalForce, PointForce,
+    Prescribe, Step, Tension, Traction, Waveform,
 };
 pub use strand::{Hand, MeshLines, Origin, SectionArea, Strand, StrandMesh};
 

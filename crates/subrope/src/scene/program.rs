@@ -299,11 +299,7 @@ fn held_arc(path: &Path, before: Option<&Standing>) -> Option<f64> {
 type LoadKey = (LoadTarget, Component);
 
 /// The loads of a step: those it gives, and those that stay.
-fn load_step(
-    step: &Step,
-    of_peak: Option<(String, Ramp)>,
-    standing: &mut BTreeMap<LoadKey, Option<f64>>,
-) -> Vec<Load> {
+fn load_step(step: &Step, of_peak: Option<(String, Ramp)>, standing: &mut BTreeMap<LoadKey, Option<f64>>) -> Vec<Load> {
     let mut paths: BTreeMap<LoadKey, Path> =
         standing.iter().map(|(key, value)| (key.clone(), Path::held(*value))).collect();
     for (key, ramp) in given_loads(step) {
