@@ -175,7 +175,7 @@ fn add_friction(
         rest[i] = change;
         add(&mut rest[i], 1.0, &lagged[i]);
     }
-    out.coupling = (!symmetric).then(|| Coupling { place: v.place, rest, lagged });
+    out.coupling = (!symmetric).then_some(Coupling { place: v.place, rest, lagged });
     add_second_variation(foot, &(v.inverse * t), third, v, out);
 }
 

@@ -26,7 +26,8 @@ fn every_template_validates() {
         let loaded = load(&file);
         assert_eq!(loaded.hash.len(), 64);
         let program = Program::new(&loaded.scene);
-        assert_eq!(program.steps.len(), loaded.scene.step.len());
+        let parts = |s: &subrope::scene::Step| s.cycles.as_ref().map_or(1, |c| 2 * c.count);
+        assert_eq!(program.steps.len(), loaded.scene.step.iter().map(parts).sum::<usize>());
         let moving = program.steps.iter().flat_map(|s| &s.motions);
         assert!(moving.into_iter().any(|m| matches!(&m.path, MotionPath::Linear(p) if !p.knots.is_empty())));
     }

@@ -76,8 +76,7 @@ impl Gmres {
             }
         }
         let residual = self.residual() / norm;
-        // Not a number, too.
-        if !(residual <= LIMIT) {
+        if residual.is_nan() || residual > LIMIT {
             return Err(LinearError::Stalled { iterations, residual, limit: LIMIT });
         }
         self.combine(iterations, x);

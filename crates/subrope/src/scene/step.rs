@@ -206,9 +206,9 @@ pub struct Cycles {
     /// as a fraction of the length.
     #[serde(default)]
     pub of: CycleControl,
-    /// Lower end of the cycle.
+    /// Lower end of the cycle \[-, N or -, as `of` says\].
     pub low: f64,
-    /// Upper end of the cycle.
+    /// Upper end of the cycle \[-, N or -\].
     pub high: f64,
     /// Course of a half cycle: "triangle" (straight) or "sine".
     #[serde(default)]

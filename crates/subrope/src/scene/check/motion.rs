@@ -107,7 +107,7 @@ impl Checker<'_> {
     fn cycles<'a>(&mut self, at: &Location, cycles: &'a Cycles, moved: &mut Vec<Moved<'a>>) {
         self.point(&at.at("point"), &cycles.point);
         moved.push(Moved { name: &cycles.point, component: Component::Uz, at: at.clone() });
-        if !(cycles.low < cycles.high) {
+        if cycles.low >= cycles.high {
             let cause = format!("reversed bounds: `low` = {} is not below `high` = {}", cycles.low, cycles.high);
             self.inconsistent(&at.at("low"), cause, "required: low < high");
         }
