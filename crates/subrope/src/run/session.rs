@@ -213,6 +213,8 @@ impl Output {
         frames: bool,
     ) -> Result<(), IoError> {
         self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
+        #[cfg(not(feature = "hdf5"))]
+        let _ = frames;
         #[cfg(feature = "hdf5")]
         {
             self.waiting += 1;
