@@ -17,4 +17,4 @@ pub use compare::{Worst, close, matrix_close, relative, scientific};
 pub use dense::Dense;
 pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity};
 pub use problem::{Problem, Recorder, Row, StepBuilder};
-pub use rope::{Run, run_scene, scene, try_run};
+pub use rope::{Run, SET_C, run_scene, scene, short_rope, try_run};

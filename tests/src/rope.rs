@@ -52,3 +52,49 @@ pub fn try_run(text: &str, deck: Option<&Path>, threads: usize) -> Result<Result
 pub fn run_scene(text: &str, deck: Option<&Path>) -> Run {
     try_run(text, deck, 1).unwrap_or_else(|e| panic!("{e}")).unwrap_or_else(|e| panic!("{e}"))
 }
+
+/// Set C of the law and two rigid ends.
+pub const SET_C: &str = r#"
+[law]
+kind = "bundle"
+K_e = 2000.0
+K_ec = 100.0
+w_e = 0.005
+nu = 0.5
+K_c = 60.0
+K_t = 15.0
+tau_t = 0.05
+H_t = 0.1
+K_l = 20.0
+tau_l = 1.0
+H_l = 0.3
+[[end]]
+name = "END_A"
+[[end]]
+name = "END_B"
+"#;
+
+/// The scene of a short coarse rope of three strands with friction between them, with these steps.
+#[must_use]
+pub fn short_rope(steps: &str) -> String {
+    format!(
+        r#"
+title = "three short strands"
+[rope]
+radius = 2.785
+length = 16.0
+lay_angle = 20.0
+yarns = {{ surface_angle = 30.0 }}
+[rope.mesh]
+core = 2
+rings = 1
+layers = 10
+{SET_C}
+[[contact]]
+name = "strands"
+friction = 0.15
+points = [8, 2]
+{steps}
+"#
+    )
+}

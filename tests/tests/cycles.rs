@@ -6,50 +6,8 @@ use std::path::Path;
 
 use subrope::progress::Silent;
 use subrope::run::{RunOptions, RunOutcome, run_scene};
-use subrope::scene::Scene;
-
-const LAW: &str = r#"
-[law]
-kind = "bundle"
-K_e = 2000.0
-K_ec = 100.0
-w_e = 0.005
-nu = 0.5
-K_c = 60.0
-K_t = 15.0
-tau_t = 0.05
-H_t = 0.1
-K_l = 20.0
-tau_l = 1.0
-H_l = 0.3
-[[end]]
-name = "END_A"
-[[end]]
-name = "END_B"
-"#;
-
-fn rope(steps: &str) -> String {
-    format!(
-        r#"
-title = "three short strands"
-[rope]
-radius = 2.785
-length = 16.0
-lay_angle = 20.0
-yarns = {{ surface_angle = 30.0 }}
-[rope.mesh]
-core = 2
-rings = 1
-layers = 10
-{LAW}
-[[contact]]
-name = "strands"
-friction = 0.15
-points = [8, 2]
-{steps}
-"#
-    )
-}
+use subrope::scene::{Component, Motion, MotionPath, MotionTarget, Program, Scene};
+use subrope_tests::{SET_C, short_rope};
 
 fn run(text: &str) -> (tempfile::TempDir, RunOutcome) {
     let folder = tempfile::tempdir().unwrap();
@@ -83,7 +41,7 @@ count = 2
 low = 0.1
 high = 1.0
 "#;
-    let (folder, outcome) = run(&rope(steps));
+    let (folder, outcome) = run(&short_rope(steps));
     let rows = &outcome.summary.cycles;
     assert_eq!(rows.len(), 2);
     let history = folder.path().join("out/history.csv");
@@ -119,7 +77,7 @@ low = 0.002
 high = 0.01
 waveform = "sine"
 "#;
-    let (folder, outcome) = run(&rope(steps));
+    let (folder, outcome) = run(&short_rope(steps));
     let row = outcome.summary.cycles[0];
     assert!((row.low_elongation - 0.002).abs() < 1e-12 && (row.high_elongation - 0.01).abs() < 1e-12, "{row:?}");
     let history = folder.path().join("out/history.csv");
@@ -133,7 +91,7 @@ waveform = "sine"
 #[test]
 fn cycles_that_make_no_sense_are_refused() {
     let refused = |cycles: &str, cause: &str| {
-        let text = rope(&format!("[[step]]\nname = \"cycle\"\n[step.cycles]\ncount = 1\n{cycles}\n"));
+        let text = short_rope(&format!("[[step]]\nname = \"cycle\"\n[step.cycles]\ncount = 1\n{cycles}\n"));
         let error = format!("{:?}", Scene::from_toml("test.toml", &text).unwrap_err());
         assert!(error.contains(cause), "{error}");
     };
@@ -141,6 +99,30 @@ fn cycles_that_make_no_sense_are_refused() {
     refused("low = 0.1\nhigh = 1.0", "peak");
     refused("of = \"force\"\nlow = 0.1\nhigh = 1.0\npoint = \"END_X\"", "END_X");
     refused("of = \"elongation\"\nlow = -1.5\nhigh = 1.0", "low");
+    refused("of = \"force\"\nlow = 0.1\nhigh = 1.0\n[step.tension]\nelongation = 0.1", "prescribed twice");
+    refused(
+        "of = \"force\"\nlow = 0.1\nhigh = 1.0\n[step.tension]\npoint = \"END_A\"\ntwist = 1.0",
+        "different points",
+    );
+}
+
+/// What cycles of the peak tension leave acting must end before the end is held again; a twist in their step is not lost.
+#[test]
+fn cycles_and_what_stands_beside_them() {
+    let pull = "[[step]]\nname = \"pull\"\ntension = { elongation = 0.01 }\n";
+    let cycle = "[[step]]\nname = \"cycle\"\ncycles = { count = 2, low = 0.1, high = 1.0 }\n";
+    let hold = "[[step]]\nname = \"hold\"\ntension = { elongation = 0.0 }\n";
+    let error = Scene::from_toml("test.toml", &short_rope(&format!("{pull}{cycle}{hold}"))).unwrap_err();
+    assert!(format!("{error:?}").contains("of an earlier step acts"), "{error:?}");
+    let twisted = "[[step]]\nname = \"cycle\"\ncycles = { count = 2, of = \"force\", low = 1.0, high = 2.0 }\n\
+        tension = { twist = \"free\" }\n";
+    let scene = Scene::from_toml("test.toml", &short_rope(twisted)).unwrap();
+    let program = Program::new(&scene);
+    assert_eq!(program.steps.len(), 4);
+    for step in &program.steps {
+        let turns = |m: &&Motion| m.component == Component::Rz && m.target == MotionTarget::Point("END_B".into());
+        assert_eq!(step.motions.iter().find(turns).unwrap().path, MotionPath::Free);
+    }
 }
 
 /// The rod is pressed to a quarter of the radius and lifted again: it leaves a groove.
@@ -158,7 +140,7 @@ origin = "middle"
 core = 2
 rings = 2
 layers = 16
-{LAW}
+{SET_C}
 [[rigid]]
 name = "ROD"
 shape = "cylinder"

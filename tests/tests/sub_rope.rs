@@ -1,49 +1,13 @@
 //! Three strands in contact, from a scene.
 
 use subrope_contact::Contact;
-use subrope_tests::run_scene;
+use subrope_tests::{run_scene, short_rope};
 
-/// A short coarse rope, stretched by 1 % with friction.
-fn short_rope(increments: usize) -> String {
-    format!(
-        r#"
-title = "three short strands"
-[rope]
-radius = 2.785
-length = 16.0
-lay_angle = 20.0
-yarns = {{ surface_angle = 30.0 }}
-[rope.mesh]
-core = 2
-rings = 1
-layers = 10
-[law]
-kind = "bundle"
-K_e = 2000.0
-K_ec = 100.0
-w_e = 0.005
-nu = 0.5
-K_c = 60.0
-K_t = 15.0
-tau_t = 0.05
-H_t = 0.1
-K_l = 20.0
-tau_l = 1.0
-H_l = 0.3
-[[end]]
-name = "END_A"
-[[end]]
-name = "END_B"
-[[contact]]
-name = "strands"
-friction = 0.15
-points = [8, 2]
-[[step]]
-name = "pull"
-increments = {{ fixed = {increments} }}
-tension = {{ elongation = 0.01 }}
-"#
-    )
+/// Stretched by 1 % with friction.
+fn pulled(increments: usize) -> String {
+    short_rope(&format!(
+        "[[step]]\nname = \"pull\"\nincrements = {{ fixed = {increments} }}\ntension = {{ elongation = 0.01 }}\n"
+    ))
 }
 
 fn contacts(run: &subrope_tests::Run) -> impl Iterator<Item = &Contact> {
@@ -52,7 +16,7 @@ fn contacts(run: &subrope_tests::Run) -> impl Iterator<Item = &Contact> {
 
 #[test]
 fn strands_share_alike_and_energy_balances() {
-    let run = run_scene(&short_rope(10), None);
+    let run = run_scene(&pulled(10), None);
     let reactions = run.model.analysis.nodal_reactions();
     let share = |strand: usize| -> f64 {
         let nodes = &run.model.mesh.mesh.node_sets[&format!("END_B_{strand}")];
@@ -62,7 +26,7 @@ fn strands_share_alike_and_energy_balances() {
     println!("shares {shares:?} N, energy error {:e}", run.model.analysis.totals().energy_error());
     assert!(shares[0] > 1.0, "it resists");
     assert!(shares.iter().all(|s| (s / shares[0] - 1.0).abs() < 1e-6), "images of each other: {shares:?}");
-    let coarser = run_scene(&short_rope(5), None).model.analysis.totals().energy_error().abs();
+    let coarser = run_scene(&pulled(5), None).model.analysis.totals().energy_error().abs();
     let error = run.model.analysis.totals().energy_error().abs();
     println!("energy error {coarser:e} in 5 increments, {error:e} in 10");
     assert!(error < 1e-2 && error < 0.5 * coarser, "{coarser:e} {error:e}");

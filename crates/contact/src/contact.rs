@@ -446,7 +446,10 @@ impl Contribution for Contact {
                 if used {
                     let stiffness = (request == Request::Tangent).then_some(buffer.stiffness.as_slice());
                     sink.add(element, &buffer.force, stiffness);
-                    buffer.products().for_each(|products| sink.add_products(element, &products));
+                    let products: Vec<_> = buffer.products().collect();
+                    if !products.is_empty() {
+                        sink.add_products(element, &products);
+                    }
                 }
             }
         }

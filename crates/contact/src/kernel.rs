@@ -10,7 +10,6 @@
 //! `xi` from that of `r . a_i = 0`. The work of a point is `-p dg + t_i dxi_i`.
 
 use nalgebra::{Matrix2, Vector2, Vector3};
-
 use subrope_fem::Product;
 
 use crate::foot::{Foot, Local};
@@ -308,10 +307,10 @@ impl PairBuffer {
         }
     }
 
-    /// The products of every point.
-    pub fn products(&self) -> impl Iterator<Item = [Product<'_>; 4]> {
+    /// The products of all points, four of each.
+    pub fn products(&self) -> impl Iterator<Item = Product<'_>> {
         let n = self.force.len();
-        self.couplings.chunks_exact(6 * n).map(move |all| {
+        self.couplings.chunks_exact(6 * n).flat_map(move |all| {
             let [place, rest, lagged] = [0, 2, 4].map(|k| [&all[k * n..(k + 1) * n], &all[(k + 1) * n..(k + 2) * n]]);
             let product = |row, column| Product { row, column };
             [

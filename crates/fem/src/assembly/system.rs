@@ -172,7 +172,8 @@ impl System {
         }
     }
 
-    /// Factorises the assembled matrix, without the products beside it. Returns the number of negative pivots where the factorisation knows it.
+    /// Factorises the assembled matrix, without the products beside it. Returns the number of negative pivots where it is
+    /// known: not with products.
     ///
     /// # Errors
     /// [`FemError::Linear`].

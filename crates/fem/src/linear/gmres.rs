@@ -1,7 +1,8 @@
 //! GMRES with a preconditioner on the right (Saad and Schultz 1986; Saad, "Iterative methods for sparse linear systems",
 //! 2003, chapter 9): minimises `|b - A x|` over a Krylov space.
 
-use super::error::{LinearError, Operand};
+use super::error::LinearError;
+use super::solver::{add, check_solution};
 
 /// Relative residual that ends the iteration: Newton's residual falls by it at best, two more iterations are cheaper than
 /// the digits.
@@ -80,10 +81,8 @@ impl Gmres {
             return Err(LinearError::Stalled { iterations, residual, limit: LIMIT });
         }
         self.combine(iterations, x);
-        match x.iter().position(|v| !v.is_finite()) {
-            Some(dof) => Err(LinearError::NonFinite { what: Operand::Solution, dof }),
-            None => Ok(GmresReport { iterations, residual }),
-        }
+        check_solution(x)?;
+        Ok(GmresReport { iterations, residual })
     }
 
     fn start(&mut self, b: &[f64], norm: f64) {
@@ -114,7 +113,7 @@ impl Gmres {
         column.clear();
         for v in old {
             let h = dot(v, vector);
-            vector.iter_mut().zip(v.iter()).for_each(|(w, v)| *w -= h * v);
+            add(vector, v, -h);
             column.push(h);
         }
         let rest = dot(vector, vector).sqrt();
@@ -140,8 +139,8 @@ impl Gmres {
             let (head, tail) = self.reduced.split_at_mut(i);
             let factor = tail[0] / self.columns[i][i];
             tail[0] = factor;
-            head.iter_mut().zip(&self.columns[i]).for_each(|(r, c)| *r -= factor * c);
-            x.iter_mut().zip(&self.directions[i]).for_each(|(x, d)| *x += factor * d);
+            add(head, &self.columns[i], -factor);
+            add(x, &self.directions[i], factor);
         }
     }
 }

@@ -375,7 +375,7 @@ fn check_finite(what: Operand, entries: &[f64]) -> Result<(), LinearError> {
     }
 }
 
-fn check_solution(solution: &[f64]) -> Result<(), LinearError> {
+pub(super) fn check_solution(solution: &[f64]) -> Result<(), LinearError> {
     match solution.iter().position(|entry| !entry.is_finite()) {
         Some(dof) => Err(LinearError::NonFinite { what: Operand::Solution, dof }),
         None => Ok(()),
@@ -386,7 +386,8 @@ fn norm(vector: &[f64]) -> f64 {
     vector.iter().fold(0.0, |largest, entry| largest.max(entry.abs()))
 }
 
-fn add(target: &mut [f64], vector: &[f64], factor: f64) {
+/// `target += factor vector`.
+pub(super) fn add(target: &mut [f64], vector: &[f64], factor: f64) {
     target.iter_mut().zip(vector).for_each(|(entry, &value)| *entry += factor * value);
 }
 

@@ -59,7 +59,8 @@ fn half(step: &Step, cycles: &Cycles, half: HalfCycle) -> Part {
         own.prescribe.push(Prescribe { point, uz: Some(Prescription::free()), ..Prescribe::default() });
     } else {
         let (length, point) = (cycles.length, cycles.point.clone());
-        own.tension = Some(Tension { elongation, force, twist: None, length, point });
+        let twist = step.tension.as_ref().and_then(|t| t.twist.clone());
+        own.tension = Some(Tension { elongation, force, twist, length, point });
     }
     Part { step: own, of_peak, half: Some(half) }
 }

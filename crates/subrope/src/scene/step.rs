@@ -195,7 +195,8 @@ pub struct Tension {
 }
 
 /// Cycles of tension: the end `point` goes to `low` and back to `high`, `count` times; its other components stay. Every
-/// half cycle is a step of its own, named after this one; `duration` covers them all and `increments` each.
+/// half cycle is a step of its own, named after this one: `duration` covers them all, `increments` and whatever else this
+/// step asks for hold for each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cycles {

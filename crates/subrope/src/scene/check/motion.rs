@@ -22,7 +22,7 @@ impl Checker<'_> {
             self.tension(&at.at("tension"), tension, &mut moved);
         }
         if let Some(cycles) = &step.cycles {
-            self.cycles(&at.at("cycles"), cycles, &mut moved);
+            self.cycles(&at.at("cycles"), cycles, step.tension.as_ref(), &mut moved);
         }
         for (index, entry) in step.prescribe.iter().enumerate() {
             self.prescribe(&at.at("prescribe").at(index), entry, &mut moved);
@@ -104,9 +104,13 @@ impl Checker<'_> {
         }
     }
 
-    fn cycles<'a>(&mut self, at: &Location, cycles: &'a Cycles, moved: &mut Vec<Moved<'a>>) {
+    fn cycles<'a>(&mut self, at: &Location, cycles: &'a Cycles, tension: Option<&Tension>, moved: &mut Vec<Moved<'a>>) {
         self.point(&at.at("point"), &cycles.point);
         moved.push(Moved { name: &cycles.point, component: Component::Uz, at: at.clone() });
+        if tension.is_some_and(|t| t.point != cycles.point) {
+            let help = "twist the end that goes to and fro, or another one in a step of its own";
+            self.inconsistent(at, "`tension` and `cycles` of a step act on different points", help);
+        }
         if cycles.low >= cycles.high {
             let cause = format!("reversed bounds: `low` = {} is not below `high` = {}", cycles.low, cycles.high);
             self.inconsistent(&at.at("low"), cause, "required: low < high");

@@ -19,7 +19,9 @@ impl Checker<'_> {
         // Only a scene without other faults has a program worth looking at.
         if self.problems.is_empty() {
             let program = Program::new(scene);
-            for resolved in &program.steps {
+            // All half cycles of a step are alike: the first speaks for them.
+            let first = |s: &&ProgramStep| s.half_cycle.is_none_or(|half| half.cycle == 1 && !half.rising);
+            for resolved in program.steps.iter().filter(first) {
                 let index = resolved.source;
                 self.loaded_components(&top("step").at(index), &scene.step[index], resolved);
             }
@@ -141,7 +143,8 @@ impl Checker<'_> {
             let LoadTarget::Point(point) = &load.target else { continue };
             let given =
                 step.force.iter().any(|f| f.point == *point && f.components()[load.component.index()].is_some());
-            let acts = load.path.start.is_some_and(|v| v != 0.0) || load.path.end().is_some_and(|v| v != 0.0);
+            // What cycles of the peak tension left acting is not known here, but it acts.
+            let acts = load.path.start != Some(0.0) || load.path.end() != Some(0.0);
             if !given && acts && !free(&MotionTarget::Point(point.clone()), load.component) {
                 let (force, motion) = (load.component.force_key(), load.component.key());
                 let cause =
