@@ -140,7 +140,8 @@ impl fmt::Display for CheckReport {
             )?;
         }
         let s = &self.system;
-        let (matrix, method) = if s.symmetric { ("symmetric", "LDL^T") } else { ("unsymmetric", "LU") };
+        let (matrix, method) =
+            if s.symmetric { ("symmetric", "LDL^T") } else { ("unsymmetric", "LDL^T of the symmetric part and GMRES") };
         writeln!(
             f,
             "  system   {} unknowns, {matrix}: {method}, ordering {}, {:.2} GFLOP per factorisation",

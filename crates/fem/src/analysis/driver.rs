@@ -292,7 +292,8 @@ impl Analysis {
     /// Makes the lists of elements of contacts fit for nodal displacements, and the system with them when they change.
     pub(super) fn search(&mut self, displacement: Option<&[f64]>) -> Result<(), FemError> {
         let displacement = displacement.unwrap_or(&self.displacement);
-        if prepare(&mut self.model.contributions, displacement)? {
+        let contributions = &mut self.model.contributions;
+        if self.phases.measure(Phase::Search, || prepare(contributions, displacement))? {
             let prescribed = std::mem::take(&mut self.prescribed);
             self.totals.searches += 1;
             self.make_system(prescribed)?;

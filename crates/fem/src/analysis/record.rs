@@ -16,13 +16,15 @@ pub enum Phase {
     Factorisation,
     /// Triangular solves and refinement.
     Solution,
+    /// Search for faces that may touch.
+    Search,
 }
 
 /// Time per phase.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Phases {
     /// By [`Phase`], in its order.
-    pub times: [Duration; 4],
+    pub times: [Duration; 5],
 }
 
 impl Phases {

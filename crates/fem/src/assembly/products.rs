@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::Equations;
 use crate::contribution::Product;
 use crate::kinematics::{Kinematics, NodeRule, Tie};
+use crate::linear::LinearTerm;
 
 /// Products `row column^T` in the unknowns, gathered element by element.
 #[derive(Default)]
@@ -30,11 +31,6 @@ impl Products {
         self.values.clear();
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.groups.is_empty()
-    }
-
     /// Adds the products of an element with some nodes, `J^T row (J^T column)^T`.
     pub fn push(
         &mut self,
@@ -53,9 +49,15 @@ impl Products {
         }
         self.groups.push(group);
     }
+}
+
+impl LinearTerm for Products {
+    fn is_empty(&self) -> bool {
+        self.groups.is_empty()
+    }
 
     /// `out += sum row (column . x)`.
-    pub fn multiply_add(&self, x: &[f64], out: &mut [f64]) {
+    fn multiply_add(&self, x: &[f64], out: &mut [f64]) {
         for group in &self.groups {
             let equations = &self.equations[group.equations.clone()];
             let n = equations.len();

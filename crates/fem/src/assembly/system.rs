@@ -6,20 +6,17 @@ use super::scatter::{self, Cliques, ScatterMap};
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Product, Request, Sink};
 use crate::kinematics::{Kinematics, Reduction, Tie};
-use crate::linear::{
-    AnalysisReport, Gmres, LinearError, LinearOperator, LinearSolver, SolverOptions, SparsePattern, Storage,
-};
+use crate::linear::{AnalysisReport, LinearTerm, SolverOptions, SparsePattern, Storage, TangentSolver};
 
 /// Pattern, scatter maps, matrix values and solver: made once per set of prescribed coordinates.
 pub struct System {
     equations: Equations,
     pattern: SparsePattern,
     maps: Vec<ScatterMap>,
-    solver: LinearSolver,
+    solver: TangentSolver,
     /// What the tangent has beside the matrix.
     products: Products,
     has_products: bool,
-    gmres: Gmres,
     /// Matrix values, with one spare position at the end.
     values: Vec<f64>,
     /// Internal nodal forces \[N\].
@@ -65,7 +62,7 @@ impl System {
         let symmetric = contributions.iter().all(|c| c.is_symmetric());
         let storage = if symmetric { Storage::Lower } else { Storage::Full };
         let pattern = pattern(kinematics, &equations, contributions, storage)?;
-        let solver = LinearSolver::analyse(&pattern, options)?;
+        let solver = TangentSolver::analyse(&pattern, options)?;
         let maps =
             contributions.iter().map(|c| ScatterMap::new(kinematics, &equations, &pattern, c.as_ref())).collect();
         Ok(Self {
@@ -77,7 +74,6 @@ impl System {
             reduction: Reduction::default(),
             products: Products::default(),
             has_products: contributions.iter().any(|c| c.has_products()),
-            gmres: Gmres::default(),
             equations,
             pattern,
             maps,
@@ -172,8 +168,8 @@ impl System {
         }
     }
 
-    /// Factorises the assembled matrix, without the products beside it. Returns the number of negative pivots where it is
-    /// known: not with products.
+    /// Factorises the assembled matrix, or its symmetric part, without the products beside it. Returns the number of
+    /// negative pivots where it says something of the tangent: only if that is symmetric.
     ///
     /// # Errors
     /// [`FemError::Linear`].
@@ -183,41 +179,19 @@ impl System {
         Ok(report.negative_pivots.filter(|_| self.products.is_empty()))
     }
 
-    /// Solves `K x = rhs` with the last factorisation: at once, or by GMRES where products stand beside the matrix, which
-    /// the factors then precondition. Answers the iterations that this took.
+    /// Solves `K x = rhs` with the last factorisation: at once, or by GMRES where the tangent is unsymmetric. Answers the
+    /// iterations that this took.
     ///
     /// # Errors
     /// [`FemError::Linear`].
     pub fn solve(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<usize, FemError> {
-        if self.products.is_empty() {
-            self.solver.solve(rhs, x)?;
-            return Ok(0);
-        }
-        let mut operator = Tangent { solver: &mut self.solver, products: &self.products };
-        Ok(self.gmres.solve(&mut operator, rhs, x)?.iterations)
+        let nnz = self.pattern.nnz();
+        Ok(self.solver.solve(&self.values[..nnz], &self.products, rhs, x)?)
     }
 
     /// Matrix values and pattern, for checks.
     pub fn matrix(&self) -> (&SparsePattern, &[f64]) {
         (&self.pattern, &self.values[..self.pattern.nnz()])
-    }
-}
-
-/// Matrix and products.
-struct Tangent<'a> {
-    solver: &'a mut LinearSolver,
-    products: &'a Products,
-}
-
-impl LinearOperator for Tangent<'_> {
-    fn apply(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
-        self.solver.multiply(x, out)?;
-        self.products.multiply_add(x, out);
-        Ok(())
-    }
-
-    fn precondition(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
-        self.solver.solve_once(x, out)
     }
 }
 

@@ -4,7 +4,8 @@
 //! nodes, compares elimination orders by their exact cost (layer by layer along a slender body, from one end or from
 //! both; nested dissection) and prepares the factors; [`LinearSolver::factorise`] and [`LinearSolver::solve`] repeat
 //! without allocation. Symmetric values are factorised by a supernodal LDLᵀ whose pivots give the inertia, unsymmetric
-//! ones by LU. Every solution is refined and its residual checked.
+//! ones by LU. Every solution is refined and its residual checked. A [`TangentSolver`] spares the LU where it can: the
+//! LDLᵀ of the symmetric part preconditions GMRES.
 //!
 //! Work is divided at places that do not depend on the number of threads and combined in a fixed order, and every part
 //! runs on sequential dense kernels: results are bitwise equal for any number of threads.
@@ -30,6 +31,8 @@ mod schedule;
 mod solver;
 mod sparse_lu;
 mod supernodes;
+mod symmetric_part;
+mod tangent_solver;
 #[cfg(test)]
 mod tests;
 
@@ -41,3 +44,4 @@ pub use ordering::{Candidate, Ordering};
 pub use pattern::{SparsePattern, Storage};
 pub use solver::LinearSolver;
 pub use supernodes::Relaxation;
+pub use tangent_solver::{LinearTerm, TangentSolver};

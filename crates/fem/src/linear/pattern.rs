@@ -103,6 +103,17 @@ impl SparsePattern {
         Some(self.col_ptr[col] + position)
     }
 
+    /// The same pattern with its lower triangle only.
+    pub(super) fn lower(&self) -> Self {
+        let mut col_ptr = vec![0];
+        let mut row_idx = Vec::with_capacity(self.nnz() / 2 + self.n);
+        for column in 0..self.n {
+            row_idx.extend(self.column(column).iter().filter(|&&row| row as usize >= column));
+            col_ptr.push(row_idx.len());
+        }
+        Self { n: self.n, col_ptr, row_idx, storage: Storage::Lower }
+    }
+
     /// Product `product = A vector` with the values of a matrix in this pattern.
     ///
     /// The sum runs over the columns in order, whatever the number of threads.

@@ -166,6 +166,8 @@ pub struct SecondsSummary {
     pub total: f64,
     /// Pattern, ordering, symbolic factorisation.
     pub analysis: f64,
+    /// Search for faces that may touch.
+    pub search: f64,
     /// Laws, elements, assembly.
     pub assembly: f64,
     /// Factorisation.
@@ -317,6 +319,7 @@ fn times(model: &RopeModel, total: f64) -> SecondsSummary {
     SecondsSummary {
         total,
         analysis: phase(Phase::Analysis),
+        search: phase(Phase::Search),
         assembly: phase(Phase::Assembly),
         factorisation: phase(Phase::Factorisation),
         solution: phase(Phase::Solution),

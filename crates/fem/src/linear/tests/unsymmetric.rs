@@ -5,7 +5,9 @@ use proptest::prelude::*;
 use super::fixtures::{
     Grid, Random, brick_stiffness, dense_solution, difference, hold, pattern_of, random_cliques, random_values, strand,
 };
-use crate::linear::{LinearError, LinearSolver, Method, SolverOptions, SparsePattern, Storage};
+use crate::linear::{
+    LinearError, LinearSolver, LinearTerm, Method, SolverOptions, SparsePattern, Storage, TangentSolver,
+};
 
 const METHODS: [Method; 2] = [Method::BlockLu, Method::SparseLu];
 
@@ -160,4 +162,67 @@ fn threads_do_not_change_a_bit() {
     for threads in [2, 3, 4] {
         assert_eq!(reference, run(threads));
     }
+}
+
+/// A product beside a matrix.
+struct RankOne(Vec<f64>, Vec<f64>);
+
+impl LinearTerm for RankOne {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn multiply_add(&self, x: &[f64], out: &mut [f64]) {
+        let factor: f64 = self.1.iter().zip(x).map(|(c, x)| c * x).sum();
+        out.iter_mut().zip(&self.0).for_each(|(o, r)| *o += factor * r);
+    }
+}
+
+fn solve_tangent(pattern: &SparsePattern, values: &[f64], term: &RankOne, rhs: &[f64]) -> (Vec<f64>, usize) {
+    let mut solver = TangentSolver::analyse(pattern, &SolverOptions::default()).unwrap();
+    assert_eq!(solver.factorise(values).unwrap().negative_pivots, None);
+    let mut solution = vec![0.0; pattern.n()];
+    let iterations = solver.solve(values, term, rhs, &mut solution).unwrap();
+    (solution, iterations)
+}
+
+#[test]
+fn the_symmetric_part_preconditions() {
+    let (pattern, values) = unsymmetric_strand(4, 4, 30);
+    let rhs = Random(12).vector(pattern.n());
+    let none = RankOne(Vec::new(), Vec::new());
+    let (solution, iterations) = solve_tangent(&pattern, &values, &none, &rhs);
+    let expected = solve(&pattern, &values, &rhs, &by(Method::BlockLu));
+    assert!(difference(&solution, &expected) < 1e-4, "{}", difference(&solution, &expected));
+    let mut back = vec![0.0; pattern.n()];
+    pattern.multiply(&values, &solution, &mut back).unwrap();
+    assert!(difference(&back, &rhs) < 1e-6);
+    assert!((1..40).contains(&iterations), "{iterations}");
+    let term = RankOne(Random(21).vector(pattern.n()), Random(22).vector(pattern.n()));
+    let (solution, more) = solve_tangent(&pattern, &values, &term, &rhs);
+    pattern.multiply(&values, &solution, &mut back).unwrap();
+    term.multiply_add(&solution, &mut back);
+    assert!(difference(&back, &rhs) < 1e-6);
+    assert!(more <= iterations + 4, "{more} after {iterations}");
+}
+
+#[test]
+fn where_the_symmetric_part_is_no_guide_the_lu_takes_over() {
+    // The symmetric part is the identity, the rest turns and stretches a thousand times as much.
+    let n = 200;
+    let pattern = pattern_of(n, &[(0..n as u32).collect()], Storage::Full);
+    let mut random = Random(3);
+    let mut values = vec![0.0; pattern.nnz()];
+    for column in 0..n {
+        for row in column..n {
+            let skew = 1000.0 * random.signed();
+            let entry = if row == column { 1.0 } else { skew };
+            values[pattern.slot(row, column).unwrap()] = entry;
+            values[pattern.slot(column, row).unwrap()] = if row == column { 1.0 } else { -skew };
+        }
+    }
+    let rhs = random.vector(n);
+    let (solution, iterations) = solve_tangent(&pattern, &values, &RankOne(Vec::new(), Vec::new()), &rhs);
+    assert!(difference(&solution, &dense_solution(&pattern, &values, &rhs)) < 1e-9);
+    assert!(iterations > 80, "{iterations}");
 }

@@ -1,0 +1,136 @@
+//! Systems whose matrix may be unsymmetric, and may have more beside it than its values.
+//!
+//! A symmetric matrix alone is factorised and solved. Otherwise the `LDL^T` of its symmetric part preconditions GMRES:
+//! what friction adds that is not symmetric is small or of low rank, so that a few iterations cost far less than an `LU`,
+//! which has to leave the order of least fill. Where the symmetric part is no guide, the `LU` takes its place.
+
+use super::error::LinearError;
+use super::gmres::{Gmres, LinearOperator};
+use super::options::{AnalysisReport, FactorReport, SolverOptions};
+use super::pattern::{SparsePattern, Storage};
+use super::solver::LinearSolver;
+use super::symmetric_part::SymmetricPart;
+
+/// What a matrix has beside its values.
+pub trait LinearTerm {
+    /// Whether there is nothing.
+    fn is_empty(&self) -> bool;
+
+    /// `out += B x`.
+    fn multiply_add(&self, x: &[f64], out: &mut [f64]);
+}
+
+/// A solver of systems of one pattern.
+pub struct TangentSolver {
+    pattern: SparsePattern,
+    options: SolverOptions,
+    solver: LinearSolver,
+    /// Of a full pattern, unless its `LU` is wanted from the start.
+    part: Option<SymmetricPart>,
+    /// The `LU`, once it was needed.
+    fallback: Option<Box<LinearSolver>>,
+    gmres: Gmres,
+    report: AnalysisReport,
+}
+
+impl TangentSolver {
+    /// Orders the unknowns and builds the structure of the factors. A full pattern is solved through its symmetric part,
+    /// unless the options name a method for unsymmetric values.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::analyse`].
+    pub fn analyse(pattern: &SparsePattern, options: &SolverOptions) -> Result<Self, LinearError> {
+        let split = pattern.storage() == Storage::Full && options.unsymmetric.is_none();
+        let part = split.then(|| SymmetricPart::new(pattern));
+        let solver = LinearSolver::analyse(part.as_ref().map_or(pattern, SymmetricPart::pattern), options)?;
+        let mut report = solver.analysis().clone();
+        report.bytes += part.as_ref().map_or(0, SymmetricPart::bytes);
+        let (pattern, options) = (pattern.clone(), options.clone());
+        Ok(Self { pattern, options, solver, part, fallback: None, gmres: Gmres::default(), report })
+    }
+
+    /// What the analysis found, of the symmetric part where that is factorised; its memory is without an `LU` that may be
+    /// needed later.
+    pub fn analysis(&self) -> &AnalysisReport {
+        &self.report
+    }
+
+    /// Factorises the matrix with `values` in the order of the pattern, or its symmetric part.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::factorise`].
+    pub fn factorise(&mut self, values: &[f64]) -> Result<FactorReport, LinearError> {
+        match &mut self.part {
+            None => self.solver.factorise(values),
+            Some(part) => {
+                let report = self.solver.factorise(part.of(values))?;
+                // Those of the symmetric part say nothing of the eigenvalues of the matrix.
+                Ok(FactorReport { negative_pivots: None, ..report })
+            }
+        }
+    }
+
+    /// Solves `(A + B) x = rhs` with `A` of the values last factorised; answers the iterations of GMRES that it took.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::solve`]; [`LinearError::Stalled`].
+    pub fn solve(
+        &mut self,
+        values: &[f64],
+        term: &dyn LinearTerm,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<usize, LinearError> {
+        if self.part.is_none() && term.is_empty() {
+            self.solver.solve(rhs, x)?;
+            return Ok(0);
+        }
+        let Self { pattern, solver, gmres, .. } = self;
+        let mut operator = Preconditioned { pattern, values, term, solver };
+        match gmres.solve(&mut operator, rhs, x) {
+            Err(LinearError::Stalled { iterations, .. }) if self.part.is_some() => {
+                Ok(iterations + self.solve_by_lu(values, term, rhs, x)?)
+            }
+            outcome => Ok(outcome?.iterations),
+        }
+    }
+
+    fn solve_by_lu(
+        &mut self,
+        values: &[f64],
+        term: &dyn LinearTerm,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<usize, LinearError> {
+        let Self { pattern, options, fallback, gmres, .. } = self;
+        let mut solver = match fallback.take() {
+            Some(solver) => solver,
+            None => Box::new(LinearSolver::analyse(pattern, options)?),
+        };
+        let solver = fallback.insert({
+            solver.factorise(values)?;
+            solver
+        });
+        Ok(gmres.solve(&mut Preconditioned { pattern, values, term, solver }, rhs, x)?.iterations)
+    }
+}
+
+/// Matrix and term, preconditioned by the factors of a solver.
+struct Preconditioned<'a> {
+    pattern: &'a SparsePattern,
+    values: &'a [f64],
+    term: &'a dyn LinearTerm,
+    solver: &'a mut LinearSolver,
+}
+
+impl LinearOperator for Preconditioned<'_> {
+    fn apply(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
+        self.pattern.multiply(self.values, x, out)?;
+        self.term.multiply_add(x, out);
+        Ok(())
+    }
+
+    fn precondition(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), LinearError> {
+        self.solver.solve_once(x, out)
+    }
+}
