@@ -10,6 +10,7 @@ mod dense;
 mod meshes;
 mod problem;
 mod rope;
+mod wires;
 
 pub use bodies::{Bodies, Body, rigid};
 pub use bricks::{Brick, brick, constant_frames, fields_of};
@@ -17,4 +18,5 @@ pub use compare::{Worst, close, matrix_close, relative, scientific};
 pub use dense::Dense;
 pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity};
 pub use problem::{Problem, Recorder, Row, StepBuilder};
-pub use rope::{Run, SET_C, run_scene, scene, short_rope, try_run};
+pub use rope::{Run, SET_C, contacts, run_scene, scene, scene_file, short_rope, try_run};
+pub use wires::{Middle, Wires, line_load};

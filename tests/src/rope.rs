@@ -4,6 +4,7 @@ use std::path::Path;
 
 use subrope::model::{ModelError, RopeModel};
 use subrope::scene::Scene;
+use subrope_contact::Contact;
 use subrope_fem::FemError;
 
 use crate::problem::{Recorder, Row};
@@ -51,6 +52,18 @@ pub fn try_run(text: &str, deck: Option<&Path>, threads: usize) -> Result<Result
 #[must_use]
 pub fn run_scene(text: &str, deck: Option<&Path>) -> Run {
     try_run(text, deck, 1).unwrap_or_else(|e| panic!("{e}")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The text of a scene that is shipped.
+#[must_use]
+pub fn scene_file(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    std::fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// The contacts of a run.
+pub fn contacts(run: &Run) -> impl Iterator<Item = &Contact> {
+    run.model.analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref())
 }
 
 /// Set C of the law and two rigid ends.

@@ -1,17 +1,20 @@
 //! Three strands in contact, from a scene.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::f64::consts::PI;
+
+use nalgebra::{Rotation3, Vector3};
+
 use subrope_contact::Contact;
-use subrope_tests::{run_scene, short_rope};
+use subrope_fem::analysis::Increments;
+use subrope_tests::{Problem, close, contacts, run_scene, short_rope};
 
 /// Stretched by 1 % with friction.
 fn pulled(increments: usize) -> String {
     short_rope(&format!(
         "[[step]]\nname = \"pull\"\nincrements = {{ fixed = {increments} }}\ntension = {{ elongation = 0.01 }}\n"
     ))
-}
-
-fn contacts(run: &subrope_tests::Run) -> impl Iterator<Item = &Contact> {
-    run.model.analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref::<Contact>())
 }
 
 #[test]
@@ -38,5 +41,112 @@ fn strands_share_alike_and_energy_balances() {
         assert!(report.touching > 0 && (report.normal / reports[0].normal - 1.0).abs() < 1e-6, "{reports:?}");
         assert!(report.friction <= 0.15 * report.normal * (1.0 + 1e-12), "Coulomb's limit: {report:?}");
         assert!(report.penetration < 0.005 * 2.785, "{report:?}");
+    }
+}
+
+/// A rope that is stretched, then bent, so that no symmetry makes the sides of a contact equal: force and moment on its
+/// end, work of friction between the strands.
+fn bent(pairs: [[usize; 2]; 3]) -> [f64; 3] {
+    let pair = |[primary, secondary]: [usize; 2]| {
+        format!(
+            "[[contact]]\nname = \"{primary}{secondary}\"\nprimary = \"LATERAL_{primary}\"\n\
+             secondary = \"LATERAL_{secondary}\"\nfriction = 0.15\npoints = [16, 4]\n"
+        )
+    };
+    let steps = r#"
+[[step]]
+name = "pull"
+increments = { fixed = 5 }
+tension = { elongation = 0.01 }
+[[step]]
+name = "bend"
+increments = { fixed = 6 }
+prescribe = [{ point = "END_B", rx = 4.0, uy = -0.3 }]
+"#;
+    let text = short_rope(steps);
+    let start = text.find("[[contact]]").unwrap();
+    let end = text.find("[[step]]").unwrap();
+    let text = format!("{}{}{}", &text[..start], pairs.map(pair).concat(), &text[end..]);
+    let run = run_scene(&text, None);
+    let (force, moment) = run.model.analysis.point_reaction(run.point("END_B"));
+    [force.norm(), moment.norm(), run.model.analysis.totals().contact_friction]
+}
+
+#[test]
+fn primary_and_secondary_exchanged_tell_the_same() {
+    let [one, other] = [bent([[1, 2], [2, 3], [3, 1]]), bent([[2, 1], [3, 2], [1, 3]])];
+    println!("force, moment, friction work {one:?}; exchanged {other:?}");
+    assert!(one[2] > 1.0, "strands slide");
+    for (what, (a, b)) in ["force", "moment", "friction work"].iter().zip(one.iter().zip(other)) {
+        close(what, *a, b, 0.01);
+    }
+}
+
+/// A stretched rope, turned by a right angle and carried away.
+#[test]
+fn a_rigid_motion_of_a_rope_slips_nothing() {
+    // So tight that the next increment finds nothing left to settle.
+    let run = run_scene(&format!("{}[solver]\nresidual_tolerance = 1e-13\n", pulled(5)), None);
+    let ends = ["END_A", "END_B"].map(|name| run.point(name));
+    let mut problem = Problem { analysis: run.model.analysis };
+    let places: Vec<[Vector3<f64>; 2]> = ends
+        .iter()
+        .map(|&end| {
+            let kinematics = &problem.analysis.model().kinematics;
+            let moved: [Vector3<f64>; 2] = kinematics.point_motion(end, problem.analysis.coordinates()).into();
+            [kinematics.points()[end].position, moved[0]]
+        })
+        .collect();
+    let before = *problem.analysis.totals();
+    let axis = Vector3::new(0.3, -0.8, 0.5).normalize();
+    let (centre, way) = (Vector3::new(3.0, -2.0, 5.0), Vector3::new(10.0, 20.0, -10.0));
+    let mut step = problem.step(Increments::Fixed(20));
+    for (&end, &[place, moved]) in ends.iter().zip(&places) {
+        for k in 0..3 {
+            step = step
+                .point_path(end, k, move |s| {
+                    let turn = Rotation3::from_scaled_axis(axis * (s * 0.5 * PI));
+                    (turn * (place + moved - centre) + centre + way * s - place)[k as usize]
+                })
+                .point_path(end, 3 + k, move |s| axis[k as usize] * (s * 0.5 * PI));
+        }
+    }
+    let step = step.build();
+    let rows = problem.run(&step).unwrap();
+    let after = *problem.analysis.totals();
+    println!(
+        "friction {} and {:e} more, stored {} and {:e} more; iterations {:?}",
+        before.contact_friction,
+        after.contact_friction - before.contact_friction,
+        before.stored,
+        after.stored - before.stored,
+        rows.iter().map(|r| r.record.iterations).collect::<Vec<_>>()
+    );
+    assert!(before.contact_friction > 1e-3);
+    close("friction", after.contact_friction, before.contact_friction, 1e-9);
+    close("stored", after.stored, before.stored, 1e-9);
+}
+
+/// Multipliers press down the penetration to what is asked for, and to where penalties lead.
+#[test]
+fn an_augmented_lagrangian_is_the_limit_of_penalties() {
+    let pull = "[[step]]\nname = \"pull\"\nincrements = { fixed = 5 }\ntension = { elongation = 0.01 }\n";
+    let with = |method: &str| {
+        let text = short_rope(pull).replace("friction = 0.15", &format!("friction = 0.0\n{method}"));
+        let run = run_scene(&text, None);
+        let deepest = contacts(&run).map(|c| c.report().penetration).fold(0.0, f64::max);
+        let (force, moment) = run.model.analysis.point_reaction(run.point("END_B"));
+        println!("{method}: F {} M {} penetration {deepest}", force.z, moment.z);
+        [force.z, moment.z, deepest]
+    };
+    let [soft, hard] = ["penalty = 4000.0", "penalty = 8000.0"].map(with);
+    for penetration in [1e-3, 1e-4] {
+        let multiplied = with(&format!("method = \"augmented\"\npenetration = {penetration}\npenalty = 1000.0"));
+        assert!(multiplied[2] <= penetration * 2.785, "penetration {}", multiplied[2]);
+        for k in 0..2 {
+            // Errors fall with one over the penalty.
+            let limit = 2.0 * hard[k] - soft[k];
+            close("limit of penalties", multiplied[k], limit, 5.0 * penetration);
+        }
     }
 }
