@@ -195,6 +195,33 @@ fn areas(mesh: &Mesh) -> Vec<f64> {
     out
 }
 
+/// On faces: forces of both sides of the contacts, opposite tractions within Coulomb's limit, gaps closed under pressure.
+#[test]
+fn fields_on_faces_balance() {
+    let text = pull(0.01, 5, 5);
+    let areas = areas(&RopeModel::from_scene(&scene(&text), None, Some(1)).unwrap().mesh.mesh);
+    let (_folder, outcome) = run(&text);
+    let file = ResultReader::open(outcome.files.results.as_ref().unwrap()).unwrap();
+    let field = |name: &str, frame: usize| file.field(Location::Cell, name, frame).unwrap();
+    let (gap, pressure, traction) =
+        (field("contact_gap", 1), field("contact_pressure", 1), field("contact_traction", 1));
+    let normal: f64 = outcome.summary.contacts.iter().map(|c| c.normal_force_n).sum();
+    // Fields are written in single precision.
+    close("both sides", product(&pressure, &areas), 2.0 * normal, 1e-6);
+    let mut total = [0.0; 3];
+    for (cell, t) in traction.chunks_exact(3).enumerate() {
+        total.iter_mut().zip(t).for_each(|(sum, t)| *sum += t * areas[cell]);
+        let magnitude = t.iter().map(|t| t * t).sum::<f64>().sqrt();
+        assert!(magnitude <= 0.15 * pressure[cell] * (1.0 + 1e-5), "cell {cell}: {magnitude} at {}", pressure[cell]);
+        assert!(pressure[cell] == 0.0 || gap[cell] < 0.0, "cell {cell}: {} at {}", gap[cell], pressure[cell]);
+    }
+    let friction: f64 = outcome.summary.contacts.iter().map(|c| c.friction_force_n).sum();
+    assert!(friction > 0.0 && total.iter().all(|t| t.abs() < 1e-6 * friction), "{total:?} of {friction}");
+    // Smooth strands that just touch: nowhere is the gap at the start more than rounding below zero.
+    let start = field("contact_gap", 0).into_iter().fold(f64::INFINITY, f64::min);
+    assert!(start > -1e-3 * 2.785 && start < 0.1, "{start}");
+}
+
 /// Fields of a cycle are what that one cycle lost, also where the cycles between are not written; nothing before the first.
 #[test]
 fn fields_of_a_cycle_are_its_row() {
