@@ -145,6 +145,16 @@ impl Contact {
             .map(move |(i, p)| combine(&p.own, &self.secondary.gather(i / per_patch, &self.positions, displacement)))
     }
 
+    /// Feet and gaps \[mm\] of all integration points at nodal displacements, patch by patch; [`None`] where the primary
+    /// surface is out of reach. Gaps are those of the surfaces themselves: an overlap at the start is not taken off.
+    pub fn gaps<'a>(&'a self, displacement: &'a [f64]) -> impl Iterator<Item = Option<(Place, f64)>> + 'a {
+        let primary = Posture { surface: &self.primary, positions: &self.positions, displacement };
+        self.points.iter().zip(self.places(displacement)).map(move |(point, x)| {
+            let foot = project(&primary, &x, point.hint.or(point.old.place)?)?;
+            (foot.gap < self.options.reach).then_some((foot.place, foot.gap))
+        })
+    }
+
     /// Sums and extremes of the committed state.
     #[must_use]
     pub fn report(&self) -> ContactReport {

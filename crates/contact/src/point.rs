@@ -29,6 +29,8 @@ pub struct History {
     pub slip: f64,
     /// Friction work so far \[mJ/mm^2\], end values.
     pub work: f64,
+    /// The same, mid-point values as in the balance of energy.
+    pub work_mid: f64,
 }
 
 /// An integration point.
@@ -121,7 +123,7 @@ impl Point {
         self.hint = Some(foot.place);
         self.pulling = 0.0;
         self.new = History { place: Some(foot.place), gap, pressure: p, ..History::default() };
-        (self.new.slip, self.new.work) = (self.old.slip, self.old.work);
+        (self.new.slip, self.new.work, self.new.work_mid) = (self.old.slip, self.old.work, self.old.work_mid);
         let mean = 0.5 * (self.old.pressure + p);
         let mut energies = PointEnergies {
             potential: (p * p - self.multiplier * self.multiplier) / (2.0 * options.penalty),
@@ -148,6 +150,7 @@ impl Point {
             self.new.elastic_length = f.magnitude / options.tangential_penalty;
             self.new.slip += f.slipped;
             self.new.work += f.magnitude * f.slipped;
+            self.new.work_mid += energies.friction;
             self.new.traction = -spatial(&foot.local, &f.traction);
         }
         (Some(Touch { pressure, friction }), energies)

@@ -6,6 +6,7 @@
 //! - [`model`]: a scene made ready to solve;
 //! - [`check`]: what a scene amounts to, before solving;
 //! - [`run`]: solving it, with results on disk;
+//! - [`analytic`]: closed forms to compare a run with;
 //! - [`point`]: paths of one material point;
 //! - [`progress`]: how a run reports to whoever watches it;
 //! - [`cli`]: the `subrope` command, the only part that prints.
@@ -51,6 +52,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod analytic;
 pub mod check;
 #[cfg(feature = "cli")]
 pub mod cli;

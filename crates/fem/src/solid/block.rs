@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 use subrope_geometry::Hexahedron;
 use subrope_material::{Law, StateKind};
 
-use super::SolidFields;
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
 use super::kernel::{NodeVector, PointGeometry};
+use super::{ElementEnergies, SolidFields};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::{FemError, parallel};
 
@@ -36,6 +36,10 @@ pub struct SolidBlock<const N: usize, L, F> {
     committed: Vec<f64>,
     trial: Vec<f64>,
     results: Vec<ElementResult<N>>,
+    /// Energies of every element at the committed state.
+    energies: Vec<ElementEnergies>,
+    /// The same of the trial; dissipation of this increment only.
+    trial_energies: Vec<ElementEnergies>,
     dissipation: [Option<usize>; 2],
     formulation: std::marker::PhantomData<F>,
 }
@@ -78,6 +82,8 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
             committed: vec![0.0; states],
             trial: vec![0.0; states],
             results: vec![ElementResult::zero(); BATCH.min(count)],
+            energies: vec![ElementEnergies::default(); count],
+            trial_energies: vec![ElementEnergies::default(); count],
             formulation: std::marker::PhantomData,
         })
     }
@@ -85,6 +91,23 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
     /// The law.
     pub fn law(&self) -> &L {
         &self.law
+    }
+
+    /// Energies of an element at the committed state.
+    pub(super) fn energies(&self, element: usize) -> ElementEnergies {
+        self.energies[element]
+    }
+
+    /// Dissipated in an element since the start by each sliding mode \[mJ\], end values.
+    pub(super) fn element_dissipation(&self, element: usize) -> [f64; 2] {
+        let states = self.element_state(element).chunks_exact(self.law.state_len().max(1));
+        let mut out = [0.0; 2];
+        for (point, state) in self.element_points(element).iter().zip(states) {
+            for (sum, offset) in out.iter_mut().zip(self.dissipation) {
+                *sum += offset.map_or(0.0, |o| point.volume * state[o]);
+            }
+        }
+        out
     }
 
     /// Committed state of a point.
@@ -240,14 +263,16 @@ impl<const N: usize, L: Law, F: Formulation<N>> Contribution for SolidBlock<N, L
         sink: &mut dyn Sink,
     ) -> Result<Energies, FemError> {
         let (mut trial, mut results) = (std::mem::take(&mut self.trial), std::mem::take(&mut self.results));
-        let outcome =
-            self.assemble_with(configuration, request, sink, Work { trial: &mut trial, results: &mut results });
-        (self.trial, self.results) = (trial, results);
+        let mut energies = std::mem::take(&mut self.trial_energies);
+        let work = Work { trial: &mut trial, results: &mut results };
+        let outcome = self.assemble_with(configuration, request, sink, work, &mut energies);
+        (self.trial, self.results, self.trial_energies) = (trial, results, energies);
         outcome
     }
 
     fn commit(&mut self) {
         self.committed.copy_from_slice(&self.trial);
+        self.energies.iter_mut().zip(&self.trial_energies).for_each(|(old, new)| old.advance(new));
     }
 
     fn fields(&self) -> Option<&dyn SolidFields> {
@@ -271,6 +296,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         request: Request,
         sink: &mut dyn Sink,
         work: Work<'_, N>,
+        kept: &mut [ElementEnergies],
     ) -> Result<Energies, FemError> {
         let stride = self.stride();
         let mut energies = Energies::default();
@@ -285,6 +311,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
                     return Err(self.failure(first + i, failure));
                 }
                 energies += result.energies;
+                kept[first + i] = ElementEnergies::of(&result.energies);
                 let stiffness = (request == Request::Tangent)
                     .then_some(result.stiffness.as_flattened().as_flattened().as_flattened());
                 sink.add(first + i, result.force.as_flattened(), stiffness);

@@ -8,4 +8,4 @@ mod output;
 pub use block::{SolidBlock, SolidMesh};
 pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume};
 pub use kernel::{NodeMatrix, NodeVector, PointGeometry};
-pub use output::{PointSample, SolidFields};
+pub use output::{ElementEnergies, PointSample, SolidFields};

@@ -7,7 +7,7 @@ use super::SolidBlock;
 use super::formulation::{ElementInput, ElementResult, Formulation};
 use super::kernel;
 use crate::FemError;
-use crate::contribution::Request;
+use crate::contribution::{Energies, Request};
 
 /// State of one integration point.
 #[derive(Clone, Debug)]
@@ -26,6 +26,28 @@ pub struct PointSample<'a> {
     pub state: &'a [f64],
 }
 
+/// Energies of one element at the committed state \[mJ\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElementEnergies {
+    /// Stored now.
+    pub stored: f64,
+    /// Dissipated since the start by transverse and longitudinal sliding, mid-point values.
+    pub dissipated_mid: [f64; 2],
+}
+
+impl ElementEnergies {
+    /// Of a trial: what this increment dissipates.
+    pub(super) fn of(energies: &Energies) -> Self {
+        Self { stored: energies.stored, dissipated_mid: energies.dissipated_mid }
+    }
+
+    /// Commits a trial.
+    pub(super) fn advance(&mut self, trial: &Self) {
+        self.stored = trial.stored;
+        self.dissipated_mid.iter_mut().zip(trial.dissipated_mid).for_each(|(sum, d)| *sum += d);
+    }
+}
+
 /// Read access to the integration points of a block, whatever its element and law.
 pub trait SolidFields {
     /// Number of elements.
@@ -40,6 +62,11 @@ pub trait SolidFields {
     fn state_bytes_per_point(&self) -> usize;
     /// Committed state and reference volume of a point: cheap, no stresses.
     fn point_state(&self, element: usize, point: usize) -> (&[f64], f64);
+    /// Energies of an element, as last committed: nothing is evaluated again.
+    fn element_energies(&self, element: usize) -> ElementEnergies;
+    /// Dissipated in an element since the start by transverse and longitudinal sliding \[mJ\], end values as in the
+    /// state.
+    fn element_dissipation(&self, element: usize) -> [f64; 2];
     /// Visits the points of one element at committed nodal displacements.
     ///
     /// # Errors
@@ -75,6 +102,14 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
 
     fn point_state(&self, element: usize, point: usize) -> (&[f64], f64) {
         (self.state(element, point), self.element_points(element)[point].volume)
+    }
+
+    fn element_energies(&self, element: usize) -> ElementEnergies {
+        self.energies(element)
+    }
+
+    fn element_dissipation(&self, element: usize) -> [f64; 2] {
+        SolidBlock::element_dissipation(self, element)
     }
 
     fn sample(

@@ -4,7 +4,7 @@ use subrope_contact::ContactReport;
 use subrope_fem::analysis::{Analysis, IncrementRecord};
 use subrope_io::Column;
 
-use super::contacts;
+use super::{contacts, strands};
 use crate::model::{MeshModel, RopeModel};
 
 const MOTIONS: [(&str, &str); 6] =
@@ -25,6 +25,16 @@ const ENERGIES: [(&str, &str); 8] = [
     ("energy_error", "-"),
 ];
 const COUNTS: [(&str, &str); 4] = [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
+
+/// Per strand of a rope.
+const STRAND: [(&str, &str); 6] = [
+    ("fz", "N"),
+    ("share", "-"),
+    ("mz", "N mm"),
+    ("stored_energy", "mJ"),
+    ("dissipated_transverse", "mJ"),
+    ("dissipated_longitudinal", "mJ"),
+];
 
 /// Energies that only contacts have.
 const CONTACT_ENERGIES: [(&str, &str); 3] =
@@ -50,7 +60,7 @@ pub fn columns(model: &RopeModel) -> Vec<Column> {
     }
     out.extend(ENERGIES.iter().chain(&COUNTS).map(|(n, u)| Column::new(*n, *u)));
     for strand in 1..=model.mesh.rope.as_ref().map_or(0, |r| r.strands.len()) {
-        out.push(Column::new(format!("strand_{strand}_fz"), "N"));
+        out.extend(STRAND.map(|(n, u)| Column::new(format!("strand_{strand}_{n}"), u)));
     }
     if contacts::contacts(analysis).next().is_some() {
         out.extend(CONTACT_ENERGIES.map(|(n, u)| Column::new(n, u)));
@@ -89,7 +99,16 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
         // Unknown for an unsymmetric factorisation.
         record.negative_pivots.map_or(-1.0, |n| n as f64),
     ]);
-    out.extend(contacts::strand_forces(mesh, analysis));
+    for strand in strands(mesh, analysis) {
+        out.extend([
+            strand.force_n,
+            strand.share_of_force,
+            strand.torque_n_mm,
+            strand.stored_mj,
+            strand.dissipated_transverse_mj,
+            strand.dissipated_longitudinal_mj,
+        ]);
+    }
     if contacts::contacts(analysis).next().is_some() {
         out.extend([totals.contact_friction, totals.contact_stored, totals.interference]);
     }

@@ -1,14 +1,17 @@
-//! What the contacts of a model tell: sums per pair, shares of the strands, fields on the cells that touch.
+//! What the contacts of a model tell: sums per pair, fields on the cells that touch.
 
+#[cfg(feature = "hdf5")]
+use nalgebra::Vector3;
 use serde::Serialize;
+#[cfg(feature = "hdf5")]
+use subrope_contact::foot::Place;
 use subrope_contact::{Contact, ContactReport};
 use subrope_fem::analysis::Analysis;
 #[cfg(feature = "hdf5")]
-use subrope_geometry::{CellKind, Mesh, Quad4, Quad9, quadrilateral};
+use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad9, quadrilateral};
 
 #[cfg(feature = "hdf5")]
 use crate::model::ContactCells;
-use crate::model::MeshModel;
 
 /// A pair of surfaces at the end of a run.
 #[derive(Clone, Debug, Serialize)]
@@ -57,25 +60,17 @@ pub fn summaries(analysis: &Analysis) -> Vec<PairSummary> {
     contacts(analysis).map(summary).collect()
 }
 
-/// Force along z at the high end that each strand of a rope carries \[N\].
-pub fn strand_forces(mesh: &MeshModel, analysis: &Analysis) -> Vec<f64> {
-    let Some(rope) = &mesh.rope else { return Vec::new() };
-    let reactions = analysis.nodal_reactions();
-    let share = |strand: usize| -> f64 {
-        let set = subrope_geometry::rope::sets::of_strand(subrope_geometry::strand::sets::END_B, strand);
-        let nodes = mesh.mesh.node_sets.get(&set).map_or(&[][..], Vec::as_slice);
-        nodes.iter().map(|&n| reactions[3 * n as usize + 2]).sum()
-    };
-    (0..rope.strands.len()).map(share).collect()
-}
-
 #[cfg(feature = "hdf5")]
-/// A quantity on the cells whose faces touch, mean over the face by reference area.
+/// A quantity on the cells whose faces touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactField {
-    /// Pressure \[MPa\].
+    /// Smallest gap \[mm\]; the reach of the search where nothing is nearer.
+    Gap,
+    /// Pressure \[MPa\], mean over the face by reference area.
     Pressure,
-    /// Friction work per area \[mJ/mm^2\].
+    /// Traction of friction on the cell \[MPa\], mean over the face.
+    Traction,
+    /// Friction work per area \[mJ/mm^2\], mean over the face.
     FrictionWork,
     /// Slipped length \[mm\], mean over the points that have slipped.
     Slip,
@@ -84,37 +79,117 @@ pub enum ContactField {
 #[cfg(feature = "hdf5")]
 /// Values of all cells of a mesh; both sides of a pair show what happens between them.
 pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
-    let mut sums = vec![0.0; mesh.cell_count()];
-    let mut areas = vec![0.0; mesh.cell_count()];
+    use ContactField as F;
+    if kind == F::Gap {
+        return gaps(mesh, analysis, cells);
+    }
+    let mut faces = FaceMeans::new(mesh, if kind == F::Traction { 3 } else { 1 });
     for (contact, cells) in contacts(analysis).zip(cells) {
         for point in contact.points() {
-            let Some(place) = point.state.place else { continue };
+            let state = point.state;
             let value = match kind {
-                ContactField::Pressure => point.state.pressure,
-                ContactField::FrictionWork => point.state.work,
-                ContactField::Slip => point.state.slip,
+                F::Traction => state.traction,
+                F::Pressure => Vector3::new(state.pressure, 0.0, 0.0),
+                F::FrictionWork => Vector3::new(state.work, 0.0, 0.0),
+                F::Slip | F::Gap => Vector3::new(state.slip, 0.0, 0.0),
             };
-            if value == 0.0 {
-                continue;
-            }
-            let own = cells.secondary.get(contact.secondary().face(point.patch));
-            let other = cells.primary.get(contact.primary().face(place.patch as usize));
-            for face in own.into_iter().chain(other) {
-                let cell = face.cell as usize;
-                sums[cell] += point.area * value;
-                if kind == ContactField::Slip {
-                    areas[cell] += point.area;
-                } else if areas[cell] == 0.0 {
-                    areas[cell] = face_area(mesh, *face);
-                }
+            let pair = faces_of(contact, cells, point.patch, state.place);
+            // Each side feels the other's opposite.
+            let signs = if kind == F::Traction { [1.0, -1.0] } else { [1.0, 1.0] };
+            for (face, sign) in pair.into_iter().zip(signs) {
+                faces.add(face, point.area, value * sign, kind == F::Slip);
             }
         }
     }
-    sums.iter().zip(&areas).map(|(s, a)| if *a > 0.0 { s / a } else { 0.0 }).collect()
+    faces.means()
 }
 
 #[cfg(feature = "hdf5")]
-fn face_area(mesh: &Mesh, face: subrope_geometry::Face) -> f64 {
+/// Friction work per area of all points since some earlier state \[mJ/mm^2\], mid-point values, as means of faces.
+pub fn friction_work_since(before: &[Vec<f64>], mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
+    let mut faces = FaceMeans::new(mesh, 1);
+    for ((contact, cells), before) in contacts(analysis).zip(cells).zip(before) {
+        for (point, before) in contact.points().zip(before) {
+            let value = Vector3::new(point.state.work_mid - before, 0.0, 0.0);
+            for face in faces_of(contact, cells, point.patch, point.state.place) {
+                faces.add(face, point.area, value, false);
+            }
+        }
+    }
+    faces.means()
+}
+
+#[cfg(feature = "hdf5")]
+/// Friction work per area of all points so far \[mJ/mm^2\], mid-point values, contact by contact.
+pub fn friction_work(analysis: &Analysis) -> Vec<Vec<f64>> {
+    contacts(analysis).map(|contact| contact.points().map(|p| p.state.work_mid).collect()).collect()
+}
+
+#[cfg(feature = "hdf5")]
+/// The face that carries a point, and the one that it touches.
+fn faces_of(contact: &Contact, cells: &ContactCells, patch: usize, place: Option<Place>) -> [Option<Face>; 2] {
+    let own = cells.secondary.get(contact.secondary().face(patch));
+    let other = place.and_then(|at| cells.primary.get(contact.primary().face(at.patch as usize)));
+    [own.copied(), other.copied()]
+}
+
+#[cfg(feature = "hdf5")]
+fn gaps(mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
+    let reach = contacts(analysis).map(|c| c.options().reach).fold(0.0, f64::max);
+    let mut out = vec![reach; mesh.cell_count()];
+    for (contact, cells) in contacts(analysis).zip(cells) {
+        for (point, foot) in contact.points().zip(contact.gaps(analysis.displacement())) {
+            let Some((place, gap)) = foot else { continue };
+            for face in faces_of(contact, cells, point.patch, Some(place)).into_iter().flatten() {
+                let smallest = &mut out[face.cell as usize];
+                *smallest = smallest.min(gap);
+            }
+        }
+    }
+    out
+}
+
+#[cfg(feature = "hdf5")]
+/// Sums over the faces of cells, to become means.
+struct FaceMeans<'a> {
+    mesh: &'a Mesh,
+    components: usize,
+    sums: Vec<f64>,
+    areas: Vec<f64>,
+}
+
+#[cfg(feature = "hdf5")]
+impl<'a> FaceMeans<'a> {
+    fn new(mesh: &'a Mesh, components: usize) -> Self {
+        let count = mesh.cell_count();
+        Self { mesh, components, sums: vec![0.0; components * count], areas: vec![0.0; count] }
+    }
+
+    /// Adds a point; the mean is over the whole face, or over the points that are not zero.
+    fn add(&mut self, face: Option<Face>, area: f64, value: Vector3<f64>, of_points: bool) {
+        let Some(face) = face.filter(|_| value != Vector3::zeros()) else { return };
+        let cell = face.cell as usize;
+        let sums = &mut self.sums[self.components * cell..self.components * (cell + 1)];
+        sums.iter_mut().zip(&value).for_each(|(sum, v)| *sum += area * v);
+        if of_points {
+            self.areas[cell] += area;
+        } else if self.areas[cell] == 0.0 {
+            self.areas[cell] = face_area(self.mesh, face);
+        }
+    }
+
+    fn means(mut self) -> Vec<f64> {
+        for (sums, area) in self.sums.chunks_exact_mut(self.components).zip(&self.areas) {
+            if *area > 0.0 {
+                sums.iter_mut().for_each(|s| *s /= area);
+            }
+        }
+        self.sums
+    }
+}
+
+#[cfg(feature = "hdf5")]
+fn face_area(mesh: &Mesh, face: Face) -> f64 {
     match mesh.kind {
         CellKind::Hex8 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad4, 4>(&x)),
         CellKind::Hex27 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad9, 9>(&x)),

@@ -7,7 +7,7 @@ use subrope_fem::solid::{PointSample, SolidFields};
 use subrope_material::StateKind;
 
 use super::contacts::{self, ContactField};
-use crate::model::{ContactCells, MeshModel};
+use crate::model::{ContactCells, MeshModel, RopeModel};
 use crate::scene::Field;
 
 /// Where a field lives.
@@ -32,13 +32,40 @@ enum Content {
     State(StateKind),
     Fibre,
     Contact(ContactField),
+    Cycle(CycleField),
     Strand,
+}
+
+/// What was lost during a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CycleField {
+    /// To a sliding mode: 0 transverse, 1 longitudinal.
+    Sliding(usize),
+    /// To friction of contacts.
+    Friction,
+}
+
+/// What had been lost where when a cycle began, mid-point values.
+pub struct CycleStart {
+    /// To each sliding mode in every element \[mJ\].
+    sliding: Vec<[f64; 2]>,
+    /// To friction at every point of every contact \[mJ/mm^2\].
+    friction: Vec<Vec<f64>>,
+}
+
+impl CycleStart {
+    /// Notes the committed state.
+    pub fn new(analysis: &Analysis) -> Self {
+        let elements = solid(analysis).into_iter();
+        let sliding = elements.flat_map(|s| (0..s.element_count()).map(move |e| s.element_energies(e).dissipated_mid));
+        Self { sliding: sliding.collect(), friction: contacts::friction_work(analysis) }
+    }
 }
 
 impl Content {
     /// Whether it comes from the integration points of the solid.
     fn is_sampled(self) -> bool {
-        !matches!(self, Self::Displacement | Self::Reaction | Self::Contact(_) | Self::Strand)
+        !matches!(self, Self::Displacement | Self::Reaction | Self::Contact(_) | Self::Cycle(_) | Self::Strand)
     }
 }
 
@@ -85,30 +112,52 @@ fn arrays_of(field: Field) -> Vec<FieldArray> {
         Field::Fibre => vec![element("fibre", 3, C::Fibre)],
         Field::Strand => vec![element("strand", 1, C::Strand)],
         Field::Contact => vec![
+            element("contact_gap", 1, C::Contact(ContactField::Gap)),
             element("contact_pressure", 1, C::Contact(ContactField::Pressure)),
+            element("contact_traction", 3, C::Contact(ContactField::Traction)),
             element("contact_friction_work", 1, C::Contact(ContactField::FrictionWork)),
             element("contact_slip", 1, C::Contact(ContactField::Slip)),
+        ],
+        Field::Cycle => vec![
+            element("dissipation_transverse_cycle", 1, C::Cycle(CycleField::Sliding(0))),
+            element("dissipation_longitudinal_cycle", 1, C::Cycle(CycleField::Sliding(1))),
+            element("contact_friction_work_cycle", 1, C::Cycle(CycleField::Friction)),
         ],
     }
 }
 
-/// The arrays that a scene asks for and its law, mesh and contacts have.
-pub fn arrays(fields: &[Field], mesh: &MeshModel, analysis: &Analysis) -> Vec<FieldArray> {
+/// The arrays that a scene asks for and its law, mesh, contacts and steps have.
+pub fn arrays(fields: &[Field], model: &RopeModel) -> Vec<FieldArray> {
+    let analysis = &model.analysis;
     let solid = solid(analysis);
+    let has_state = |kind| solid.is_some_and(|s| s.state_variables().iter().any(|v| v.kind == kind));
+    let (touches, cycles) =
+        (contacts::contacts(analysis).next().is_some(), model.half_cycles.iter().any(Option::is_some));
     let exists = |array: &FieldArray| match array.content {
-        Content::State(kind) => solid.is_some_and(|s| s.state_variables().iter().any(|v| v.kind == kind)),
-        Content::Contact(_) => contacts::contacts(analysis).next().is_some(),
-        Content::Strand => mesh.rope.is_some(),
+        Content::State(kind) => has_state(kind),
+        Content::Contact(_) => touches,
+        Content::Cycle(CycleField::Sliding(mode)) => cycles && has_state(MODES[mode]),
+        Content::Cycle(CycleField::Friction) => cycles && touches,
+        Content::Strand => model.mesh.rope.is_some(),
         _ => true,
     };
     fields.iter().flat_map(|&f| arrays_of(f)).filter(exists).collect()
+}
+
+/// Dissipation of the sliding modes, in their order.
+const MODES: [StateKind; 2] = [StateKind::TransverseDissipation, StateKind::LongitudinalDissipation];
+
+/// Whether some arrays need to know how a cycle began.
+pub fn want_cycles(arrays: &[FieldArray]) -> bool {
+    arrays.iter().any(|a| matches!(a.content, Content::Cycle(_)))
 }
 
 fn solid(analysis: &Analysis) -> Option<&dyn SolidFields> {
     analysis.model().contributions.iter().find_map(|c| c.fields())
 }
 
-/// Values of all arrays at the committed state, component running fastest.
+/// Values of all arrays at the committed state, component running fastest. Without the start of a cycle nothing was lost
+/// during one.
 ///
 /// # Errors
 /// As an evaluation of the law at the committed state.
@@ -117,6 +166,7 @@ pub fn values(
     mesh: &MeshModel,
     cells: &[ContactCells],
     analysis: &Analysis,
+    cycle: Option<&CycleStart>,
 ) -> Result<Vec<Vec<f64>>, FemError> {
     // Nodes of rigid bodies stand behind those of the mesh.
     let nodal = 3 * mesh.mesh.point_count();
@@ -126,6 +176,13 @@ pub fn values(
             Content::Displacement => analysis.displacement()[..nodal].to_vec(),
             Content::Reaction => tied_only(analysis)[..nodal].to_vec(),
             Content::Contact(kind) => contacts::field(kind, &mesh.mesh, analysis, cells),
+            Content::Cycle(kind) => match (cycle, kind) {
+                (None, _) => vec![0.0; mesh.mesh.cell_count()],
+                (Some(start), CycleField::Sliding(mode)) => sliding_since(&start.sliding, mode, analysis),
+                (Some(start), CycleField::Friction) => {
+                    contacts::friction_work_since(&start.friction, &mesh.mesh, analysis, cells)
+                }
+            },
             Content::Strand => mesh.rope.iter().flat_map(|r| &r.strand_of_cell).map(|s| f64::from(s + 1)).collect(),
             _ => Vec::new(),
         })
@@ -162,6 +219,14 @@ pub fn values(
     Ok(out)
 }
 
+/// Lost to a sliding mode since some earlier state, per reference volume \[mJ/mm^3\].
+fn sliding_since(before: &[[f64; 2]], mode: usize, analysis: &Analysis) -> Vec<f64> {
+    let Some(solid) = solid(analysis) else { return Vec::new() };
+    let volume = |e: usize| (0..solid.points_per_element()).map(|q| solid.point_state(e, q).1).sum::<f64>();
+    let lost = |e: usize| solid.element_energies(e).dissipated_mid[mode];
+    before.iter().enumerate().map(|(e, b)| (lost(e) - b[mode]) / volume(e)).collect()
+}
+
 /// Mean, or for directions the unit vector of the mean.
 fn finish(content: Content, volume: f64, values: &mut [f64]) {
     let scale = match content {
@@ -193,7 +258,7 @@ fn components(content: Content, sample: &PointSample<'_>, solid: &dyn SolidField
             let fibre: Vector3<f64> = sample.deformation_gradient * sample.frame.column(0);
             out.extend_from_slice(fibre.normalize().as_slice());
         }
-        Content::Displacement | Content::Reaction | Content::Contact(_) | Content::Strand => {}
+        Content::Displacement | Content::Reaction | Content::Contact(_) | Content::Cycle(_) | Content::Strand => {}
     }
 }
 

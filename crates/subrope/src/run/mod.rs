@@ -7,15 +7,19 @@ mod error;
 #[cfg(feature = "hdf5")]
 mod fields;
 mod findings;
+mod line_load;
 mod sections;
 mod session;
+mod strands;
 mod summary;
 
 pub use cycles::CycleRow;
 pub use error::RunError;
 pub(crate) use error::output_advice;
 pub use findings::{Findings, Mode, ModeFinding, Zone};
+pub use line_load::{AnalyticLineLoad, ContactLine, LineLoadSummary, LineSlice, contact_lines};
 pub use sections::{SectionShape, section_shapes};
+pub use strands::{StrandSummary, strands};
 pub use summary::{Status, Summary};
 
 use std::path::{Path, PathBuf};
@@ -60,7 +64,8 @@ pub struct RunOutcome {
     pub summary: Summary,
 }
 
-/// Runs a scene file: `results.vtkhdf`, `history.csv` (both readable while it runs) and `summary.json`.
+/// Runs a scene file: `results.vtkhdf`, `history.csv`, `cycles.csv` and `line_load.csv` where there are cycles and contact
+/// lines (all readable while it runs), and `summary.json`.
 ///
 /// # Errors
 /// [`Error::Scene`], [`Error::Model`] for what is wrong in the input; [`Error::Run`] when no equilibrium is found (files

@@ -10,15 +10,16 @@ use subrope_fem::analysis::{Analysis, Control, IncrementRecord};
 use subrope_io::{HistoryWriter, IoError, write_json};
 
 use super::cycles::CycleTable;
+use super::line_load::{FrameTime, LineLoadTable};
 use super::summary::{Status, Summary};
-use super::{RunError, RunFiles, RunOutcome, columns};
+use super::{RunError, RunFiles, RunOutcome, columns, line_load};
 use crate::Error;
 use crate::model::{ContactCells, CycleStep, MeshModel, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
 use crate::scene::SceneFile;
 
 #[cfg(feature = "hdf5")]
-use super::fields::{self, FieldArray, Place};
+use super::fields::{self, CycleStart, FieldArray, Place};
 #[cfg(feature = "hdf5")]
 use subrope_io::{FieldSpec, Precision, Provenance, ResultWriter, WriterOptions};
 
@@ -37,18 +38,25 @@ pub struct Session<'a> {
 struct Output {
     history: HistoryWriter,
     cycles: CycleTable,
-    #[cfg(feature = "hdf5")]
-    results: ResultWriter,
-    #[cfg(feature = "hdf5")]
-    arrays: Vec<FieldArray>,
-    #[cfg(feature = "hdf5")]
+    line_loads: LineLoadTable,
     every: usize,
-    /// Frames left out because a stress could not be evaluated again.
-    #[cfg(feature = "hdf5")]
-    lost_frames: usize,
     /// Increments of the current step since the last frame.
-    #[cfg(feature = "hdf5")]
     waiting: usize,
+    /// The last increment.
+    at: FrameTime,
+    #[cfg(feature = "hdf5")]
+    fields: Fields,
+}
+
+/// The file with the fields.
+#[cfg(feature = "hdf5")]
+struct Fields {
+    results: ResultWriter,
+    arrays: Vec<FieldArray>,
+    /// Where the cycle that runs began, if a field wants to know.
+    cycle: Option<CycleStart>,
+    /// Frames left out because a stress could not be evaluated again.
+    lost_frames: usize,
 }
 
 impl<'a> Session<'a> {
@@ -111,8 +119,8 @@ impl<'a> Session<'a> {
         }
         let failure = watch.failure.take();
         #[cfg(feature = "hdf5")]
-        if watch.output.lost_frames > 0 {
-            let lost = watch.output.lost_frames;
+        if watch.output.fields.lost_frames > 0 {
+            let lost = watch.output.fields.lost_frames;
             watch
                 .observer
                 .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
@@ -155,10 +163,92 @@ fn finish(analysis: &Analysis, started: Instant, interrupted: bool) -> Finish {
 }
 
 impl Output {
-    #[cfg(feature = "hdf5")]
     fn open(file: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
+        let mut out = Self {
+            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
+            cycles: CycleTable::open(model, &files.folder)?,
+            line_loads: LineLoadTable::open(model, &files.folder)?,
+            every: file.scene.output.every,
+            waiting: 0,
+            at: FrameTime::default(),
+            #[cfg(feature = "hdf5")]
+            fields: Fields::open(file, model, &files.folder)?,
+        };
+        let scenery = Scenery { mesh: &model.mesh, cells: &model.contact_cells };
+        match out.frame(scenery, &model.analysis) {
+            Ok(()) => Ok(out),
+            Err(error) => {
+                // Without a step the files are of no use, and readers complain of them.
+                drop(out);
+                let opened = [Some(files.history.clone()), files.results.clone()];
+                for path in opened.into_iter().flatten().chain([files.folder.join(line_load::FILE)]) {
+                    let _ = std::fs::remove_file(path);
+                }
+                Err(error)
+            }
+        }
+    }
+
+    /// Notes where a cycle begins; `half` is what the step that begins is half of.
+    fn begin_step(&mut self, half: Option<&CycleStep>, analysis: &Analysis) {
+        if let Some(step) = half {
+            self.cycles.begin(step, analysis);
+        }
+        #[cfg(feature = "hdf5")]
+        self.fields.begin_step(half, analysis);
+    }
+
+    fn increment(
+        &mut self,
+        scenery: Scenery<'_>,
+        analysis: &Analysis,
+        record: &IncrementRecord,
+        cutbacks: usize,
+        frames: bool,
+    ) -> Result<(), IoError> {
+        self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
+        self.at = FrameTime { step: record.step_index, increment: record.increment };
+        self.waiting += 1;
+        if frames && self.waiting >= self.every {
+            self.frame(scenery, analysis)?;
+        }
+        Ok(())
+    }
+
+    /// Leaves out the frame of a step.
+    fn skip_frame(&mut self) {
+        self.waiting = 0;
+    }
+
+    /// Writes what is still waiting.
+    fn end_step(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
+        if self.waiting > 0 {
+            self.frame(scenery, analysis)?;
+        }
+        Ok(())
+    }
+
+    fn frame(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
+        self.waiting = 0;
+        self.line_loads.frame(self.at, scenery.mesh, scenery.cells, analysis)?;
+        #[cfg(feature = "hdf5")]
+        self.fields.frame(scenery, analysis)?;
+        Ok(())
+    }
+
+    fn close(mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
+        self.end_step(scenery, analysis)?;
+        #[cfg(feature = "hdf5")]
+        self.fields.results.close()?;
+        Ok(())
+    }
+}
+
+#[cfg(feature = "hdf5")]
+impl Fields {
+    fn open(file: &SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, IoError> {
         let scene = &file.scene;
-        let arrays = fields::arrays(&scene.output.fields, &model.mesh, &model.analysis);
+        let arrays = fields::arrays(&scene.output.fields, model);
         let specs: Vec<FieldSpec> = arrays.iter().map(spec).collect();
         let provenance: Provenance = [
             ("version", env!("CARGO_PKG_VERSION").to_string()),
@@ -174,93 +264,29 @@ impl Output {
             },
             deflate: (scene.output.compression > 0).then_some(scene.output.compression),
         };
-        let path = files.folder.join(RESULTS);
-        let mut out = Self {
-            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
-            cycles: CycleTable::open(model, &files.folder)?,
-            results: ResultWriter::create(&path, &model.mesh.mesh, &specs, &provenance, options)?,
-            arrays,
-            every: scene.output.every,
-            waiting: 0,
-            lost_frames: 0,
-        };
-        let scenery = Scenery { mesh: &model.mesh, cells: &model.contact_cells };
-        match out.frame(scenery, &model.analysis) {
-            Ok(()) => Ok(out),
-            Err(error) => {
-                // Without a step the files are of no use, and readers complain of them.
-                drop(out);
-                let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_file(&files.history));
-                Err(error)
+        let results = ResultWriter::create(&folder.join(RESULTS), &model.mesh.mesh, &specs, &provenance, options)?;
+        Ok(Self { results, arrays, cycle: None, lost_frames: 0 })
+    }
+
+    fn begin_step(&mut self, half: Option<&CycleStep>, analysis: &Analysis) {
+        match half {
+            None => self.cycle = None,
+            Some(step) if !step.half.rising && fields::want_cycles(&self.arrays) => {
+                self.cycle = Some(CycleStart::new(analysis));
             }
+            Some(_) => {}
         }
     }
 
-    #[cfg(not(feature = "hdf5"))]
-    fn open(_: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
-        Ok(Self {
-            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
-            cycles: CycleTable::open(model, &files.folder)?,
-        })
-    }
-
-    fn increment(
-        &mut self,
-        scenery: Scenery<'_>,
-        analysis: &Analysis,
-        record: &IncrementRecord,
-        cutbacks: usize,
-        frames: bool,
-    ) -> Result<(), IoError> {
-        self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
-        #[cfg(not(feature = "hdf5"))]
-        let _ = frames;
-        #[cfg(feature = "hdf5")]
-        {
-            self.waiting += 1;
-            if frames && self.waiting >= self.every {
-                self.frame(scenery, analysis)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Leaves out the frame of a step.
-    fn skip_frame(&mut self) {
-        #[cfg(feature = "hdf5")]
-        {
-            self.waiting = 0;
-        }
-    }
-
-    /// Writes what is still waiting.
-    fn end_step(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        #[cfg(feature = "hdf5")]
-        if self.waiting > 0 {
-            self.frame(scenery, analysis)?;
-        }
-        #[cfg(not(feature = "hdf5"))]
-        let _ = (scenery, analysis);
-        Ok(())
-    }
-
-    #[cfg(feature = "hdf5")]
     fn frame(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        self.waiting = 0;
+        let cycle = self.cycle.as_ref();
         // The committed state was evaluated a moment ago: a law that fails here would be at the very edge of its range.
-        let Ok(values) = fields::values(&self.arrays, scenery.mesh, scenery.cells, analysis) else {
+        let Ok(values) = fields::values(&self.arrays, scenery.mesh, scenery.cells, analysis, cycle) else {
             self.lost_frames += 1;
             return Ok(());
         };
         let slices: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
         self.results.append(analysis.time(), &slices)
-    }
-
-    fn close(mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        self.end_step(scenery, analysis)?;
-        #[cfg(feature = "hdf5")]
-        self.results.close()?;
-        Ok(())
     }
 }
 
@@ -276,7 +302,6 @@ fn spec(array: &FieldArray) -> FieldSpec {
 #[derive(Clone, Copy)]
 struct Scenery<'a> {
     mesh: &'a MeshModel,
-    #[cfg_attr(not(feature = "hdf5"), allow(dead_code))]
     cells: &'a [ContactCells],
 }
 
@@ -305,9 +330,7 @@ impl Watch<'_> {
     }
 
     fn begin_step(&mut self, analysis: &Analysis) {
-        if let Some(step) = &self.half_cycle {
-            self.output.cycles.begin(step, analysis);
-        }
+        self.output.begin_step(self.half_cycle.as_ref(), analysis);
     }
 
     fn end_step(&mut self, analysis: &Analysis) -> Result<(), FemError> {

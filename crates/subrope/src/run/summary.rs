@@ -9,7 +9,9 @@ use subrope_fem::analysis::Phase;
 use super::contacts::{self, PairSummary};
 use super::cycles::CycleRow;
 use super::findings::Findings;
+use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, contact_lines};
 use super::session::integration_points;
+use super::strands::{self, StrandSummary};
 use crate::model::RopeModel;
 use crate::scene::SceneFile;
 
@@ -51,9 +53,15 @@ pub struct Summary {
     /// Contacts, where there are any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<PairSummary>,
-    /// Force along z at the high end that each strand of a rope carries.
+    /// Load along the contact lines of generated strands, in the order of `contacts`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub strand_forces_n: Vec<f64>,
+    pub line_loads: Vec<LineLoadSummary>,
+    /// What a closed form gives for the lines of a straight rope without core.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub analytic_line_load: Option<AnalyticLineLoad>,
+    /// What each strand of a rope carries, stores and loses.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strands: Vec<StrandSummary>,
     /// Cycle by cycle, where there are cycles.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cycles: Vec<CycleRow>,
@@ -187,7 +195,9 @@ impl Summary {
             reference_points: points(model),
             energies: energies(model),
             contacts: contacts::summaries(analysis),
-            strand_forces_n: contacts::strand_forces(&model.mesh, analysis),
+            line_loads: contact_lines(model).iter().map(ContactLine::summary).collect(),
+            analytic_line_load: line_load::analytic(model),
+            strands: strands::strands(&model.mesh, analysis),
             cycles: cycles.to_vec(),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
             size: sizes(model),
@@ -224,7 +234,11 @@ impl Summary {
         if !self.contacts.is_empty() {
             let normal: f64 = self.contacts.iter().map(|c| c.normal_force_n).sum();
             let friction = number(e.contact_friction_mj);
-            parts.push(format!("contacts press with {} N and lose {friction} mJ to friction", number(normal)));
+            let mut contacts = format!("contacts press with {} N and lose {friction} mJ to friction", number(normal));
+            if e.contact_stored_mj > NOTABLE * e.external_work_mj.abs() {
+                contacts += &format!(", {} mJ are stored in their compliance", number(e.contact_stored_mj));
+            }
+            parts.push(contacts);
         }
         format!(
             "At {} s: {}; energy balance off by {:.1e} of the work.",
@@ -234,6 +248,9 @@ impl Summary {
         )
     }
 }
+
+/// Part of the work put in from which energy stored in contacts is told.
+const NOTABLE: f64 = 1e-4;
 
 /// Four digits that matter; less than a millionth is nothing.
 fn number(value: f64) -> String {

@@ -50,15 +50,19 @@ pub enum Field {
     Fibre,
     /// Reaction forces of the nodes \[N\].
     Reactions,
-    /// Contact pressure \[MPa\], friction work per area \[mJ/mm^2\] and slip \[mm\] on the elements that touch.
+    /// Gap \[mm\], pressure \[MPa\], traction of friction \[MPa\], friction work per area \[mJ/mm^2\] and slip \[mm\] of
+    /// contacts, on the elements that touch.
     Contact,
+    /// In scenes with cycles, what the cycle has lost: energy dissipated per reference volume by each sliding mode
+    /// \[mJ/mm^3\] and friction work of contacts per area \[mJ/mm^2\], mid-point values.
+    Cycle,
     /// Number of the strand of a rope.
     Strand,
 }
 
 impl Field {
     /// All fields.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Displacement,
         Self::Stress,
         Self::StrainModes,
@@ -67,6 +71,7 @@ impl Field {
         Self::Fibre,
         Self::Reactions,
         Self::Contact,
+        Self::Cycle,
         Self::Strand,
     ];
 }
