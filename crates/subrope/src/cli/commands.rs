@@ -71,9 +71,8 @@ fn run_scene(path: &Path, out: Option<&Path>, threads: Option<usize>) -> Result<
 /// One sentence of physics, and where the files are.
 fn closing(outcome: &RunOutcome) -> String {
     let files = &outcome.files;
-    let names = [files.results.as_ref(), Some(&files.history), Some(&files.summary)];
-    let names: Vec<_> =
-        names.into_iter().flatten().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned()).collect();
+    let names = files.results.iter().chain([&files.history]).chain(&files.tables).chain([&files.summary]);
+    let names: Vec<_> = names.filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned()).collect();
     format!("{}\n{} are in {}\n", outcome.summary.sentence(), names.join(", "), files.folder.display())
 }
 

@@ -127,6 +127,11 @@ impl CycleTable {
         Ok(Self { writer, rows: Vec::new(), start: turn, before: turn, low: turn, first_low: 0.0 })
     }
 
+    /// Whether there is a table.
+    pub fn is_open(&self) -> bool {
+        self.writer.is_some()
+    }
+
     /// Notes where a half cycle begins.
     pub fn begin(&mut self, step: &CycleStep, analysis: &Analysis) {
         if step.half.rising {

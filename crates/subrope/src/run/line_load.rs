@@ -334,6 +334,11 @@ impl LineLoadTable {
         Ok(Self { writer: Some(HistoryWriter::create(&path, &columns)?) })
     }
 
+    /// Whether there is a table.
+    pub fn is_open(&self) -> bool {
+        self.writer.is_some()
+    }
+
     /// Adds the slices of all lines.
     pub fn frame(
         &mut self,

@@ -51,6 +51,8 @@ pub struct RunFiles {
     pub results: Option<PathBuf>,
     /// One row per increment.
     pub history: PathBuf,
+    /// Other tables: cycles, line loads.
+    pub tables: Vec<PathBuf>,
     /// Numbers at the end.
     pub summary: PathBuf,
 }

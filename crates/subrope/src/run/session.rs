@@ -12,7 +12,7 @@ use subrope_io::{HistoryWriter, IoError, write_json};
 use super::cycles::CycleTable;
 use super::line_load::{FrameTime, LineLoadTable};
 use super::summary::{Status, Summary};
-use super::{RunError, RunFiles, RunOutcome, columns, line_load};
+use super::{RunError, RunFiles, RunOutcome, columns, cycles, line_load};
 use crate::Error;
 use crate::model::{ContactCells, CycleStep, MeshModel, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
@@ -63,10 +63,11 @@ impl<'a> Session<'a> {
     /// Makes the folder and opens the files.
     pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, Error> {
         std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
-        let files = RunFiles {
+        let mut files = RunFiles {
             folder: folder.to_path_buf(),
             results: cfg!(feature = "hdf5").then(|| folder.join(RESULTS)),
             history: folder.join("history.csv"),
+            tables: Vec::new(),
             summary: folder.join("summary.json"),
         };
         // A summary of an earlier run must not stand beside new results.
@@ -77,6 +78,8 @@ impl<'a> Session<'a> {
             _ => {}
         }
         let output = Output::open(file, model, &files).map_err(RunError::Output)?;
+        let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
+        files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
         Ok(Self { file, files, output, started: Instant::now() })
     }
 
