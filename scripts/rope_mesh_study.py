@@ -63,7 +63,7 @@ def main():
         # The cycle is given in fractions of the tension at the end of the pull.
         peak = [row for row in history if column(row, "step") == 1][-1]
         cells = [
-            str(summary["sizes"]["elements"]), str(summary["sizes"]["unknowns"]),
+            str(summary["size"]["elements"]), str(summary["size"]["unknowns"]),
             f"{column(peak, 'END_B_fz'):.1f}", f"{column(peak, 'END_B_mz'):.1f}",
             *(f"{column(cycle, name):.3f}" for name in
               ("hysteresis", "dissipated_transverse", "dissipated_longitudinal", "contact_friction_work")),
