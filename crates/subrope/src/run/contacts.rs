@@ -1,6 +1,7 @@
 //! What the contacts of a model tell: sums per pair, shares of the strands, fields on the cells that touch.
 
 use serde::Serialize;
+pub use subrope_contact::contacts;
 use subrope_contact::{Contact, ContactReport};
 use subrope_fem::analysis::Analysis;
 #[cfg(feature = "hdf5")]
@@ -31,11 +32,6 @@ pub struct PairSummary {
     pub friction_work_mj: f64,
     /// Normal penalty \[MPa/mm\].
     pub penalty_mpa_per_mm: f64,
-}
-
-/// All contacts of an analysis.
-pub fn contacts(analysis: &Analysis) -> impl Iterator<Item = &Contact> {
-    analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref::<Contact>())
 }
 
 /// One entry per pair.
