@@ -6,12 +6,12 @@ use std::fmt;
 
 use serde::Serialize;
 use subrope_geometry::sizing::{Check, Open, Origin, SizingReport};
-use subrope_geometry::{CellKind, Hierarchy, Quantity};
+use subrope_geometry::{Hierarchy, Quantity};
 
-use crate::model::{cell_kind, section};
 use crate::scene::{Rope, Scene, Sizing};
 
-/// What the sizing of a rope comes to.
+/// What the sizing of a rope comes to: strands are circles of their radius, which touch or are `gap` apart. The smooth
+/// surfaces that touch in the mesh lie a little inside, so that the rope of the mesh is that much thinner.
 #[derive(Clone, Debug)]
 pub struct RopeSizing {
     /// What is given, what follows, what is told twice, what stays open.
@@ -30,7 +30,7 @@ impl RopeSizing {
             return None;
         }
         let sizing = rope.sizing.clone().unwrap_or_default();
-        let report = hierarchy(rope, &sizing, cell_kind(scene.element.formulation)).report();
+        let report = hierarchy(rope, &sizing).report();
         Some(Self { report, tolerance: sizing.tolerance })
     }
 
@@ -139,11 +139,11 @@ pub struct OpenSummary {
 impl fmt::Display for SizingSummary {
     /// One line per finding.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (key, QuantitySummary { value, unit, relation, from }) in &self.quantities {
+        for (key, QuantitySummary { value, unit, relation, .. }) in &self.quantities {
             let value = digits(*value);
             match relation {
                 None => writeln!(f, "{key} {value} {unit}, given")?,
-                Some(relation) => writeln!(f, "{key} {value} {unit}, follows from {} ({relation})", from.join(", "))?,
+                Some(relation) => writeln!(f, "{key} {value} {unit}, follows ({relation})")?,
             }
         }
         for ToldTwice { quantity, value, follows, unit, relation, from } in &self.told_twice {
@@ -221,7 +221,7 @@ pub(crate) fn scaled(quantity: Quantity, value: f64) -> f64 {
     if unit(quantity) == "degrees" { value.to_degrees() } else { value }
 }
 
-fn hierarchy(rope: &Rope, sizing: &Sizing, kind: CellKind) -> Hierarchy {
+fn hierarchy(rope: &Rope, sizing: &Sizing) -> Hierarchy {
     let pitched = rope.yarns.pitch.zip(rope.radius).map(|(pitch, radius)| (TAU * radius / pitch).atan());
     Hierarchy {
         filament_dtex: sizing.filament_dtex,
@@ -240,16 +240,12 @@ fn hierarchy(rope: &Rope, sizing: &Sizing, kind: CellKind) -> Hierarchy {
         packing: sizing.packing,
         strand_radius: rope.radius,
         outer_diameter: rope.outer_diameter,
-        gap: gap(rope, kind),
+        gap: gap(rope),
     }
 }
 
-/// Distance of the circles over their radius when the strands are as far apart as the rope says: in contact are smooth
-/// surfaces, whose radius is a little smaller. `None` when something else gives the helix radius.
-fn gap(rope: &Rope, kind: CellKind) -> Option<f64> {
-    if rope.core.is_some() || rope.helix_radius.is_some() || rope.compaction > 0.0 {
-        return None;
-    }
-    let smooth = section(&rope.mesh).mesh(1.0, kind).ok()?.smooth_radius();
-    Some(rope.gap + 2.0 * (smooth - 1.0))
+/// Distance of neighbouring circles over their radius; `None` when something else gives the helix radius.
+fn gap(rope: &Rope) -> Option<f64> {
+    let otherwise = rope.core.is_some() || rope.helix_radius.is_some() || rope.compaction > 0.0;
+    (!otherwise).then_some(rope.gap)
 }

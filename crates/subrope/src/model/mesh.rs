@@ -160,7 +160,7 @@ fn add_volumes<H: Hexahedron<N>, const N: usize>(mesh: &Mesh, out: &mut [f64]) {
 }
 
 /// Nodes of the bricks of a formulation.
-pub(crate) fn cell_kind(formulation: Formulation) -> CellKind {
+fn cell_kind(formulation: Formulation) -> CellKind {
     match formulation {
         Formulation::Hex27 => CellKind::Hex27,
         _ => CellKind::Hex8,

@@ -12,9 +12,6 @@ pub use contact::ContactCells;
 pub use error::ModelError;
 pub use mesh::{MeshModel, RopeModelShape};
 
-pub(crate) use mesh::cell_kind;
-pub(crate) use rope::section;
-
 use nalgebra::Vector3;
 use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};

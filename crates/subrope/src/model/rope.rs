@@ -45,13 +45,13 @@ fn hand_of(hand: scene::Hand) -> Handedness {
     }
 }
 
-/// A checked scene gives one, or it follows. The diameter of given strands is met by the surfaces that touch.
+/// A checked scene gives one, or it follows.
 fn lay_of(entry: &scene::Rope, sizing: Option<&RopeSizing>) -> LayBy {
-    match (entry.lay_angle, entry.lay_length, entry.outer_diameter, entry.radius) {
+    match (entry.lay_angle, entry.lay_length, sizing.and_then(RopeSizing::lay_angle), entry.outer_diameter) {
         (Some(angle), ..) => LayBy::Angle(angle.to_radians()),
         (_, Some(length), ..) => LayBy::Length(length),
-        (_, _, Some(diameter), Some(_)) => LayBy::OuterDiameter(diameter),
-        _ => LayBy::Angle(sizing.and_then(RopeSizing::lay_angle).unwrap_or(f64::NAN)),
+        (_, _, Some(angle), _) => LayBy::Angle(angle),
+        (.., diameter) => LayBy::OuterDiameter(diameter.unwrap_or(f64::NAN)),
     }
 }
 
@@ -69,7 +69,7 @@ fn yarns_of(entry: &scene::Yarns) -> YarnLay {
 }
 
 /// The section of a mesh entry.
-pub(crate) fn section(entry: &scene::StrandMesh) -> Section {
+pub(super) fn section(entry: &scene::StrandMesh) -> Section {
     Section {
         core_cells: entry.core,
         rings: entry.rings,

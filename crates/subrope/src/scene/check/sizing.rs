@@ -73,8 +73,7 @@ impl Checker<'_> {
 
     /// What the mesh needs and nothing gives.
     fn lacking(&mut self, at: &Location, sizing: &RopeSizing, rope: &Rope) {
-        let lay_by_diameter = rope.radius.is_some() && rope.outer_diameter.is_some();
-        let lay = rope.lay_length.is_some() || lay_by_diameter || sizing.lay_angle().is_some();
+        let lay = rope.lay_length.is_some() || sizing.lay_angle().is_some();
         let needed = [(Quantity::StrandRadius, sizing.radius().is_some()), (Quantity::LayAngle, lay)];
         for (quantity, _) in needed.iter().filter(|(_, there)| !there) {
             let open = sizing.report.open.iter().filter(|open| open.unknown.contains(quantity));
