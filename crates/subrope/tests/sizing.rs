@@ -119,7 +119,7 @@ fn what_contradicts_is_told_with_its_keys() {
     refused("linear_density = 90000.0", &heavy, &["no `lay_angle` fits", "`linear_density`", "contraction by twist"]);
     // A given radius and lay against a given diameter.
     let keys = "radius = 2.785\nlay_angle = 20.0\nouter_diameter = 14.0";
-    refused(keys, "[rope.sizing]", &["`outer_diameter` is 14 mm, but 12.0", "`lay_angle`, `radius`"]);
+    refused(keys, "[rope.sizing]", &["`outer_diameter` is 14 mm, but 12.118 mm by `strands`, `lay_angle`, `radius`"]);
 }
 
 #[test]
