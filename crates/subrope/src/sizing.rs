@@ -167,10 +167,13 @@ pub(crate) fn other_sources(report: &SizingReport, check: &Check) -> Vec<Quantit
     sources
 }
 
-/// Five digits that matter.
+/// Five digits that matter; less than a billionth is nothing.
 pub(crate) fn digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+    if value.abs() < 1e-9 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
     }
     let decimals = (4 - value.abs().log10().floor() as i32).max(0) as usize;
     let text = format!("{value:.decimals$}");
