@@ -21,6 +21,7 @@ component() {
 format() {
     component fmt rustfmt
     run cargo fmt --all --check
+    run cargo fmt --manifest-path examples/two_strands/Cargo.toml --check
 }
 
 arrows() {

@@ -14,7 +14,7 @@ import re
 import subprocess
 
 # core, rings, layers, points of a face: the spacing of points is about the same
-MESHES = [(2, 1, 30, (8, 3)), (2, 2, 40, (8, 2)), (3, 2, 50, (6, 2)), (4, 3, 60, (4, 2))]
+MESHES = [(2, 1, 30, (8, 3)), (2, 2, 40, (8, 2)), (4, 2, 50, (4, 2)), (4, 3, 70, (4, 2))]
 
 
 def member_scene(text, core, rings, layers, points):

@@ -101,7 +101,7 @@ impl Ready {
         let axis = Axis::new(Vector3::zeros(), Vector3::z()).unwrap();
         let field = HelicalFibres::new(axis, Lay::from_rate((PI / 6.0).tan() / 2.785).unwrap());
         let solid = brick(kind, &mesh, &fibre_frames(&mesh, &field).unwrap(), law(mu)).unwrap();
-        let kinematics = Kinematics::new(mesh.points.clone(), ends(&mesh, section)).unwrap();
+        let kinematics = Kinematics::new(mesh.points.clone(), ends(&mesh, &section)).unwrap();
         let contributions = vec![solid];
         let count = kinematics.coordinate_count();
         let free = vec![false; count];
@@ -155,14 +155,14 @@ fn layers(kind: Brick) -> usize {
     if kind == Brick::Quadratic { 6 } else { 50 }
 }
 
-fn ends(mesh: &Mesh, kind: SectionKind) -> Vec<Section> {
+fn ends(mesh: &Mesh, kind: &SectionKind) -> Vec<Section> {
     [(sets::END_A, f64::min as fn(f64, f64) -> f64), (sets::END_B, f64::max)]
         .map(|(name, pick)| Section {
             name: name.into(),
             position: Vector3::new(0.0, 0.0, mesh.points.iter().map(|p| p.z).reduce(pick).unwrap()),
             axis: Vector3::z(),
             nodes: mesh.node_sets[name].clone(),
-            kind,
+            kind: kind.clone(),
         })
         .into()
 }
@@ -172,7 +172,7 @@ fn assembly_allocates_nothing() {
     for kind in Brick::ALL {
         for section in [SectionKind::Rigid, SectionKind::Radial] {
             for mu in [0.0, 0.2] {
-                let mut ready = Ready::new(kind, section, mu);
+                let mut ready = Ready::new(kind, section.clone(), mu);
                 ready.assemble(Request::Tangent);
                 let count = allocations_of(|| {
                     ready.assemble(Request::Tangent);

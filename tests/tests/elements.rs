@@ -5,9 +5,9 @@
 use std::f64::consts::PI;
 
 use nalgebra::{DVector, Matrix3, Rotation3, Vector3};
-use subrope_fem::Request;
 use subrope_fem::analysis::Increments;
-use subrope_fem::kinematics::{Kinematics, Section, SectionKind};
+use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};
+use subrope_fem::{FemError, Request};
 use subrope_geometry::{
     Axis, CellKind, HelicalFibres, Lay, Mesh, Section as SectionShape, Strand, fibre_frames, strand::sets,
 };
@@ -370,15 +370,39 @@ fn forces_are_the_slopes_of_the_incremental_potential() {
 
 // ---------------------------------------------------------------------------------------------------------------- ties
 
-fn ends(mesh: &Mesh, kind: SectionKind) -> Vec<Section> {
+#[derive(Clone, Copy, Debug)]
+enum Ends {
+    Rigid,
+    Radial,
+    /// Two parts that slide obliquely, and a strip between them that does not.
+    Sliding,
+}
+
+impl Ends {
+    const ALL: [Self; 3] = [Self::Rigid, Self::Radial, Self::Sliding];
+
+    fn kind(self, mesh: &Mesh, nodes: &[u32]) -> SectionKind {
+        let part = |x: f64, y: f64| {
+            let direction = Vector3::new(x, y, 0.4);
+            let nodes = nodes.iter().copied().filter(|&n| x * (mesh.points[n as usize].x - 0.5) > 0.2).collect();
+            Slide { direction, nodes }
+        };
+        match self {
+            Self::Rigid => SectionKind::Rigid,
+            Self::Radial => SectionKind::Radial,
+            Self::Sliding => SectionKind::Sliding(vec![part(1.0, 0.3), part(-1.0, 0.5)]),
+        }
+    }
+}
+
+fn ends(mesh: &Mesh, kind: Ends) -> Vec<Section> {
     let centre = |z: f64| Vector3::new(0.45, 0.55, z);
     [("low", 0.0, false), ("high", 2.0, true)]
-        .map(|(name, z, top)| Section {
-            name: name.into(),
-            position: centre(z),
-            axis: Vector3::z(),
-            nodes: (0..mesh.point_count() as u32).filter(|&n| is_end(&mesh.points[n as usize], top)).collect(),
-            kind,
+        .map(|(name, z, top)| {
+            let all = 0..mesh.point_count() as u32;
+            let nodes: Vec<u32> = all.filter(|&n| is_end(&mesh.points[n as usize], top)).collect();
+            let kind = kind.kind(mesh, &nodes);
+            Section { name: name.into(), position: centre(z), axis: Vector3::z(), nodes, kind }
         })
         .into()
 }
@@ -388,7 +412,7 @@ fn is_end(x: &Vector3<f64>, top: bool) -> bool {
 }
 
 /// Two bricks between sections turned by large angles.
-fn tied<L: Law + 'static>(kind: Brick, section: SectionKind, law: L) -> (Dense, DVector<f64>) {
+fn tied<L: Law + 'static>(kind: Brick, section: Ends, law: L) -> (Dense, DVector<f64>) {
     let mesh = mesh_of(kind, &two_distorted());
     let solid = brick(kind, &mesh, &constant_frames(&mesh, frame()), law).unwrap();
     let kinematics = Kinematics::new(mesh.points.clone(), ends(&mesh, section)).unwrap();
@@ -417,7 +441,7 @@ fn tied<L: Law + 'static>(kind: Brick, section: SectionKind, law: L) -> (Dense, 
 #[test]
 fn stiffness_of_ties_is_the_derivative_of_the_residual() {
     fn check<L: Law + 'static>(kind: Brick, name: &str, law: impl Fn() -> L) {
-        for section in [SectionKind::Rigid, SectionKind::Radial] {
+        for section in Ends::ALL {
             let (mut dense, q) = tied(kind, section, law());
             let exact = dense.stiffness(&q);
             let differences = dense.differenced_stiffness(&q, 2e-6);
@@ -433,11 +457,43 @@ fn stiffness_of_ties_is_the_derivative_of_the_residual() {
     }
 }
 
+#[test]
+fn parts_slide_on_directions_that_turn_with_the_section() {
+    let mesh = mesh_of(Brick::Plain, &two_distorted());
+    let kinematics = Kinematics::new(mesh.points.clone(), ends(&mesh, Ends::Sliding)).unwrap();
+    let (point, turn, shift) = (&kinematics.points()[1], Vector3::new(0.3, -0.8, 1.1), Vector3::new(0.1, 0.2, 0.3));
+    let mut q = vec![0.0; kinematics.coordinate_count()];
+    q[point.first as usize..point.first as usize + 6].copy_from_slice(&[shift.as_slice(), turn.as_slice()].concat());
+    q[point.slides[0] as usize] = 0.25;
+    let mut u = vec![0.0; 3 * mesh.point_count()];
+    kinematics.displacements(&q, &mut u);
+    let rotation = Rotation3::from_scaled_axis(turn);
+    let direction = Vector3::new(1.0, 0.3, 0.4).normalize();
+    for &node in &point.nodes {
+        let x = mesh.points[node as usize];
+        let slid = if x.x - 0.5 > 0.2 { direction * 0.25 } else { Vector3::zeros() };
+        let moved = x + Vector3::from_column_slice(&u[3 * node as usize..3 * node as usize + 3]);
+        let expected = point.position + shift + rotation * (x - point.position + slid);
+        assert!((moved - expected).norm() < 1e-14, "{moved} {expected}");
+    }
+    let refused = |change: fn(&mut Vec<Slide>)| {
+        let mut sections = ends(&mesh, Ends::Sliding);
+        let SectionKind::Sliding(parts) = &mut sections[1].kind else { unreachable!() };
+        change(parts);
+        let error = Kinematics::new(mesh.points.clone(), sections).err();
+        assert!(matches!(error, Some(FemError::BadSlide { part: 2, .. })), "{error:?}");
+    };
+    refused(|parts| parts[1].direction = Vector3::zeros());
+    refused(|parts| parts[1].nodes.clear());
+    refused(|parts| parts[1].nodes = parts[0].nodes.clone());
+    refused(|parts| parts[1].nodes.push(0));
+}
+
 /// The moment on a reference point is spatial: it works on a turn about fixed axes through its current position.
 #[test]
 fn reaction_moments_are_slopes_of_the_energy() {
     for kind in Brick::ALL {
-        for section in [SectionKind::Rigid, SectionKind::Radial] {
+        for section in Ends::ALL {
             let (mut dense, q) = tied(kind, section, FibreNeoHooke::new(1.0, 1.0, 100.0).unwrap());
             dense.evaluate(&q, Request::Residual).unwrap();
             for point in 0..2 {

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use nalgebra::{Rotation3, Vector3};
 
 use subrope_contact::Contact;
+use subrope_fem::FemError;
 use subrope_fem::analysis::Increments;
 use subrope_tests::{Problem, close, contacts, run_scene, short_rope};
 
@@ -148,5 +149,71 @@ fn an_augmented_lagrangian_is_the_limit_of_penalties() {
             let limit = 2.0 * hard[k] - soft[k];
             close("limit of penalties", multiplied[k], limit, 5.0 * penetration);
         }
+    }
+}
+
+/// Displacement of a node \[mm\].
+fn moved(run: &subrope_tests::Run, node: usize) -> Vector3<f64> {
+    Vector3::from_column_slice(&run.model.analysis.displacement()[3 * node..3 * node + 3])
+}
+
+#[test]
+fn strands_slide_inwards_at_sliding_ends() {
+    let sliding = pulled(10).replace("name = \"END_A\"", "name = \"END_A\"\nkind = \"sliding\"");
+    let run = run_scene(&sliding.replace("name = \"END_B\"", "name = \"END_B\"\nkind = \"sliding\""), None);
+    let analysis = &run.model.analysis;
+    let mesh = &run.model.mesh.mesh;
+    // Three strands are images of each other under 120 degrees, displacements too.
+    let n = mesh.point_count() / 3;
+    let largest = (0..n).map(|node| moved(&run, node).norm()).fold(0.0, f64::max);
+    let mut worst: f64 = 0.0;
+    for strand in 1..3 {
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::TAU * strand as f64 / 3.0);
+        for node in 0..n {
+            worst = worst.max((moved(&run, strand * n + node) - turn * moved(&run, node)).norm());
+        }
+    }
+    println!("largest displacement {largest} mm, off symmetry by {worst:e} mm");
+    assert!(worst < 1e-6 * largest, "off symmetry by {worst:e} mm");
+    // At both ends every strand goes inwards as a whole, and nothing pushes it there.
+    let kinematics = &analysis.model().kinematics;
+    for point in kinematics.points() {
+        assert_eq!(point.slides.len(), 3);
+        for (strand, &c) in point.slides.iter().enumerate() {
+            let slide = analysis.coordinates()[c as usize];
+            println!("{} strand {}: {slide} mm", point.name, strand + 1);
+            assert!(slide < -1e-4, "{slide}");
+            assert!(analysis.reactions()[c as usize].abs() < 1e-12, "{}", analysis.reactions()[c as usize]);
+            let nodes = &mesh.node_sets[&format!("{}_{}", point.name, strand + 1)];
+            let mean: Vector3<f64> = nodes.iter().map(|&node| moved(&run, node as usize)).sum::<Vector3<f64>>();
+            let mean = mean / nodes.len() as f64;
+            let radius = run.model.mesh.centroid(nodes).xy().normalize();
+            assert!((mean.xy() - radius * slide).norm() < 1e-12, "{mean} {slide}");
+            for &node in nodes {
+                assert!((moved(&run, node as usize) - mean).norm() < 1e-12, "not as one body");
+            }
+        }
+    }
+    let rigid = run_scene(&pulled(10), None);
+    let force = |run: &subrope_tests::Run| run.model.analysis.point_reaction(1).0.z;
+    println!("force {} N, with rigid ends {} N", force(&run), force(&rigid));
+    assert!(force(&run) < force(&rigid));
+    assert!(analysis.totals().energy_error().abs() < 1e-2);
+}
+
+#[test]
+fn a_strand_that_slides_along_one_line_is_told() {
+    let straight = pulled(1).replace("lay_angle = 20.0", "lay_angle = 0.0\ngap = 0.5");
+    let sliding = straight.replace("[[end]]\nname", "[[end]]\nkind = \"sliding\"\nname");
+    let mut model = subrope::model::RopeModel::from_scene(&subrope_tests::scene(&sliding), None, Some(1)).unwrap();
+    let Err(subrope::run::RunError::Solver { cause, .. }) = model.check_steps() else { panic!("not told") };
+    let FemError::RigidModes { count: 3, motions, .. } = &*cause else { panic!("{cause}") };
+    assert!(motions.contains("part 1 of section") && motions.contains("sliding along x"), "{motions}");
+    // The same with laid strands, or with one rigid end, is held.
+    for held in
+        [sliding.replace("lay_angle = 0.0", "lay_angle = 20.0"), sliding.replacen("kind = \"sliding\"\n", "", 1)]
+    {
+        let scene = subrope_tests::scene(&held);
+        subrope::model::RopeModel::from_scene(&scene, None, Some(1)).unwrap().check_steps().unwrap();
     }
 }

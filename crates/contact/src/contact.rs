@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
+use subrope_fem::analysis::Analysis;
 use subrope_fem::{Configuration, Contribution, Energies, FemError, Request, Sink, Verdict};
 
 use crate::foot::{Local, Place, Posture, project};
@@ -63,6 +64,11 @@ pub struct ContactReport {
     pub penetration: f64,
     /// Friction work since the start \[mJ\].
     pub work: f64,
+}
+
+/// The contacts among the contributions of an analysis, in their order.
+pub fn contacts(analysis: &Analysis) -> impl Iterator<Item = &Contact> {
+    analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref())
 }
 
 impl Contact {

@@ -23,7 +23,7 @@ pub mod search;
 pub mod spline;
 mod surface;
 
-pub use contact::{Contact, ContactReport};
+pub use contact::{Contact, ContactReport, contacts};
 pub use error::ContactError;
 pub use options::{ContactOptions, FrictionTangent, Method, default_penalty};
 pub use point::{History, PointRecord};

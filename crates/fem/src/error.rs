@@ -126,6 +126,17 @@ pub enum FemError {
         /// Name.
         name: String,
     },
+    /// A part of a section that cannot slide.
+    #[error(
+        "part {part} of section {name} cannot slide: it needs a direction, and nodes of that section that slide in no \
+        other part"
+    )]
+    BadSlide {
+        /// Name of the section.
+        name: String,
+        /// Number of the part, from 1.
+        part: usize,
+    },
     /// A section without nodes.
     #[error("section {name} has no nodes")]
     EmptySection {

@@ -7,7 +7,7 @@ mod touching;
 mod yarn;
 
 pub use lay::{Handedness, Lay};
-pub use touching::{touching_radius, touching_radius_at_angle};
+pub use touching::{touching_pair, touching_radius, touching_radius_at_angle};
 pub use yarn::Yarn;
 
 pub(crate) use kepler::kepler;

@@ -34,13 +34,13 @@ pub use fibre::{
     FibreField, FibresAlongHelix, HelicalFibres, Parallel, PerCellFrames, centroid_frames, fibre_frames,
     frame_from_directions,
 };
-pub use helix::{FrenetFrame, Handedness, Helix, Lay, Yarn, touching_radius, touching_radius_at_angle};
+pub use helix::{FrenetFrame, Handedness, Helix, Lay, Yarn, touching_pair, touching_radius, touching_radius_at_angle};
 pub use hexahedron::{Hex8, Hex27, Hexahedron, MappedPoint, QuadraturePoint, map_point};
 pub use mesh::{CellKind, Face, Mesh, exterior_faces};
 pub use quadrilateral::{FacePoint, Quad4, Quad9, Quadrilateral, surface_area};
 pub use rope::{
     Compaction, HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeStrand, Sense, YarnLay,
-    YarnLayBy,
+    YarnLayBy, join_strands,
 };
 pub use section::{Section, SectionArea, SectionMesh};
 pub use sizing::{Hierarchy, Quantity, SizingReport};

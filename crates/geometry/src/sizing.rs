@@ -3,6 +3,7 @@
 //! What a maker tells of a rope is partly redundant and partly incomplete. [`Hierarchy`] takes what is known;
 //! [`Hierarchy::report`] says what follows from it, what stays open and what contradicts.
 
+mod pair;
 mod quantity;
 mod relation;
 mod report;
@@ -36,6 +37,8 @@ pub struct Hierarchy {
     pub strand_angle: Option<f64>,
     /// Angle between the axis of a strand and that of the rope \[rad\].
     pub lay_angle: Option<f64>,
+    /// Length of rope per turn of a strand \[mm\], strands circular and touching.
+    pub lay_length: Option<f64>,
     /// Linear density of the rope \[tex = g/km\].
     pub rope_tex: Option<f64>,
     /// Solid area over area of the section of a strand \[-\].
@@ -44,10 +47,13 @@ pub struct Hierarchy {
     pub strand_radius: Option<f64>,
     /// Diameter of the circle around the rope \[mm\], strands circular and touching.
     pub outer_diameter: Option<f64>,
+    /// Distance between neighbouring strands over their radius \[-\]: touching ones have 0. `None` when the helix radius
+    /// has another reason (a core, flattened strands), so that neither diameter nor lay length tell of the angle.
+    pub gap: Option<f64>,
 }
 
 impl Default for Hierarchy {
-    /// Three strands, nothing else known.
+    /// Three touching strands, nothing else known.
     fn default() -> Self {
         Self {
             filament_dtex: None,
@@ -61,10 +67,12 @@ impl Default for Hierarchy {
             coating: None,
             strand_angle: None,
             lay_angle: None,
+            lay_length: None,
             rope_tex: None,
             packing: None,
             strand_radius: None,
             outer_diameter: None,
+            gap: Some(0.0),
         }
     }
 }
@@ -85,6 +93,7 @@ impl Hierarchy {
             Quantity::Coating => self.coating,
             Quantity::StrandAngle => self.strand_angle,
             Quantity::LayAngle => self.lay_angle,
+            Quantity::LayLength => self.lay_length,
             Quantity::RopeTex => self.rope_tex,
             Quantity::Packing => self.packing,
             Quantity::StrandRadius => self.strand_radius,

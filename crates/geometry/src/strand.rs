@@ -7,7 +7,7 @@ mod sweep;
 pub use axis::{StrandAxis, StrandEnds};
 pub use fibres::StrandFibres;
 
-use crate::{CellKind, GeometryError, Lay, Mesh, Parameter, Section, SectionArea, check};
+use crate::{CellKind, GeometryError, Helix, Lay, Mesh, Parameter, Section, SectionArea, check};
 use std::f64::consts::PI;
 
 /// Names of the sets that a strand mesh carries.
@@ -95,6 +95,13 @@ impl Default for Strand {
 }
 
 impl Strand {
+    /// The default strand on a helix, as in a rope: `length` \[mm\] is that of the rope, both ends are plane and normal
+    /// to its axis.
+    pub fn on_helix(helix: Helix, length: f64) -> Self {
+        let length = helix.arc_length(length);
+        Self { length, axis: StrandAxis::Helix(helix), ends: StrandEnds::Flat, ..Self::default() }
+    }
+
     /// Checks the parameters.
     ///
     /// # Errors

@@ -5,7 +5,10 @@
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
-use subrope_geometry::{Axis, GeometryError, Handedness, Helix, Lay, Yarn, touching_radius, touching_radius_at_angle};
+use subrope_geometry::{
+    Axis, GeometryError, Handedness, Helix, Lay, Strand, StrandEnds, Yarn, touching_pair, touching_radius,
+    touching_radius_at_angle,
+};
 
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * (1.0 + a.abs().max(b.abs()))
@@ -231,5 +234,41 @@ fn touching_radius_against_brute_force() {
             let distance = sampled_distance(a, angle, strands);
             assert!((distance - 2.0).abs() < 1e-12, "{strands} at {degrees} deg: {distance}");
         }
+    }
+}
+
+/// Least distance of two helices, by walking along one with the nearest point of the other.
+#[test]
+fn two_unequal_strands_touch() {
+    let radii = [2.0, 1.3];
+    for lay_length in [30.0, 48.0, 400.0] {
+        let lay = Lay::from_lay_length(lay_length, Handedness::Left).unwrap();
+        let [a, b] = touching_pair(radii, lay).unwrap();
+        let first = Helix::new(Axis::default(), a, lay, 0.3).unwrap();
+        let second = Helix::new(Axis::default(), b, lay, 0.3 + PI).unwrap();
+        let distance = (0..1000).map(|i| {
+            let x = first.position(0.1 * f64::from(i));
+            (second.position(second.nearest(&x).unwrap()) - x).norm()
+        });
+        assert!(close(distance.fold(f64::INFINITY, f64::min), 3.3, 1e-12));
+        assert!(close(a * radii[0] * radii[0], b * radii[1] * radii[1], 1e-14), "tensions balance");
+    }
+    let equal = touching_pair([1.5, 1.5], Lay::from_lay_length(40.0, Handedness::Right).unwrap()).unwrap();
+    assert!(close(equal[0], 1.5, 1e-14) && close(equal[1], 1.5, 1e-14));
+    let short = Lay::from_lay_length(8.0, Handedness::Right).unwrap();
+    assert!(matches!(touching_pair(radii, short), Err(GeometryError::StrandsDoNotFit { strands: 2, .. })));
+    assert!(touching_pair([0.0, 1.0], short).is_err());
+}
+
+#[test]
+fn a_strand_on_a_helix_has_the_length_of_the_rope() {
+    let lay = Lay::from_lay_length(40.0, Handedness::Right).unwrap();
+    let helix = Helix::new(Axis::default(), 2.0, lay, 0.0).unwrap();
+    let strand = Strand { radius: 1.5, layers: 4, ..Strand::on_helix(helix, 20.0) };
+    assert_eq!(strand.ends, StrandEnds::Flat);
+    let mesh = strand.mesh().unwrap();
+    let ends = ["END_A", "END_B"].map(|end| mesh.node_sets[end].iter().map(|&n| mesh.points[n as usize].z));
+    for (z, expected) in ends.into_iter().zip([-10.0, 10.0]) {
+        assert!(z.into_iter().all(|z| close(z, expected, 1e-12)));
     }
 }

@@ -153,14 +153,14 @@ fn unequal_strands_are_joined() {
         Strand { radius, axis, length, layers: 8, ends: StrandEnds::Flat, ..Strand::default() }
     };
     let strands = [strand(2.0, 1.3, 0.0), strand(1.2, 2.1, 0.5 * TAU)];
-    let (mesh, surfaces) = rope::join_strands(&strands).unwrap();
+    let (mesh, surfaces) = join_strands(&strands).unwrap();
     mesh.validate().unwrap();
     let volumes = strands.map(|strand| strand.volume());
     assert!((volume(&mesh).unwrap() / (volumes[0] + volumes[1]) - 1.0).abs() < 1e-12);
     assert_eq!(surfaces[1].nodes, mesh.node_sets["SURFACE_NODES_2"]);
     assert!(fibre_frames(&mesh, &RopeFibres::new(&strands)).unwrap().iter().all(|f| frame_deviation(f) < 1e-12));
     let mixed = [strands[0], Strand { kind: CellKind::Hex27, ..strands[1] }];
-    assert!(matches!(rope::join_strands(&mixed), Err(GeometryError::KindsDiffer { strand: 2 })));
+    assert!(matches!(join_strands(&mixed), Err(GeometryError::KindsDiffer { strand: 2 })));
 }
 
 /// Around times along points outwards, and the faces of the grid are the lateral surface.

@@ -86,6 +86,35 @@ fn contradictions_carry_both_values() {
     assert!(senseless.value(Quantity::Density).is_none());
 }
 
+/// A lay length or a diameter binds radius and lay angle together: two relations with the same two unknowns.
+#[test]
+fn radius_and_lay_angle_follow_together() {
+    let angle = 22_f64.to_radians();
+    let known = Hierarchy { packing: Some(0.75), lay_angle: Some(angle), gap: Some(0.02), ..published() };
+    let full = known.report();
+    let [radius, diameter, lay_length] =
+        [Quantity::StrandRadius, Quantity::OuterDiameter, Quantity::LayLength].map(|q| value(&full, q));
+    let open = Hierarchy { lay_angle: None, ..known };
+    for part in [
+        Hierarchy { lay_length: Some(lay_length), ..open },
+        Hierarchy { outer_diameter: Some(diameter), ..open },
+        Hierarchy { rope_tex: None, lay_length: Some(lay_length), outer_diameter: Some(diameter), ..open },
+    ] {
+        let report = part.report();
+        assert!((value(&report, Quantity::StrandRadius) / radius - 1.0).abs() < 1e-9, "{report}");
+        assert!((value(&report, Quantity::LayAngle) / angle - 1.0).abs() < 1e-9, "{report}");
+        assert!(report.checks.iter().all(|check| check.relation == Relation::Yarn), "{report}");
+    }
+    // The helix radius of flattened strands is another one.
+    let flattened = Hierarchy { gap: None, lay_length: Some(lay_length), ..open }.report();
+    assert_eq!(flattened.value(Quantity::LayAngle), None);
+    let sources = full.sources(Quantity::OuterDiameter);
+    assert!(sources.contains(&Quantity::Packing) && !sources.contains(&Quantity::YarnTex), "{sources:?}");
+    // Straight strands have no lay length, which is no contradiction.
+    let straight = Hierarchy { lay_angle: Some(0.0), ..known }.report();
+    assert!(straight.impossible.is_empty() && straight.value(Quantity::OuterDiameter).is_some(), "{straight}");
+}
+
 #[test]
 fn contraction_of_a_twisted_strand() {
     let (n, t) = (200_000, (PI / 6.0).tan());

@@ -14,6 +14,7 @@ mod elastic;
 mod error;
 mod law;
 pub mod mandel;
+mod rest;
 mod strain;
 pub mod testkit;
 
@@ -24,4 +25,5 @@ pub use bundle::{
 pub use elastic::{CompressibleNeoHooke, EngineeringConstants, FibreNeoHooke, IsochoricNeoHooke, StVenantKirchhoff};
 pub use error::LawError;
 pub use law::{FibreResponse, Law, PointInput, Request, Response, StateKind, StateVariable};
+pub use rest::transverse_modulus;
 pub use strain::StrainModes;

@@ -6,6 +6,7 @@ use nalgebra::Matrix3;
 use subrope_material::driver::PointDriver;
 use subrope_material::{
     BundleLaw, BundleParameters, Compaction, CompressibleNeoHooke, Friction, Hardening, ModeParameters, StrainModes,
+    transverse_modulus,
 };
 
 /// `W = 1/2 (1000 Ie^2 + 50 Ic^2 + 20 Id^2 + 10 Is^2)`.
@@ -225,4 +226,13 @@ fn energy_balance_on_a_monotone_path() {
             assert_relative_eq!(stored, 5.0 * elastic * elastic + kappa * kappa, epsilon = 1e-14);
         }
     }
+}
+
+/// `I_comp = E22/2` and `D1 = E22/2` for small strain across the fibres: `K_c/4 + K_t/4`, sliding or not.
+#[test]
+fn transverse_modulus_at_rest() {
+    let law = BundleLaw::new(quadratic()).unwrap();
+    assert_relative_eq!(transverse_modulus(&law).unwrap(), 17.5, epsilon = 1e-12);
+    let isotropic = CompressibleNeoHooke::new(3.0, 5.0).unwrap();
+    assert_relative_eq!(transverse_modulus(&isotropic).unwrap(), 11.0, epsilon = 1e-12);
 }

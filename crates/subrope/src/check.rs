@@ -9,6 +9,7 @@ use subrope_io::Ignored;
 use crate::Error;
 use crate::model::{ModelError, RopeModel};
 use crate::scene::SceneFile;
+use crate::sizing::{RopeSizing, SizingSummary};
 
 /// What a scene amounts to.
 #[derive(Clone, Debug)]
@@ -31,6 +32,8 @@ pub struct CheckReport {
     pub state_bytes_per_point: usize,
     /// Estimate of the largest memory of a run \[MB\].
     pub memory_mb: f64,
+    /// What is given of a rope and what follows, where it is sized.
+    pub sizing: Option<SizingSummary>,
     /// Keywords of the deck that were not read.
     pub ignored: Vec<Ignored>,
 }
@@ -63,10 +66,11 @@ const BASE_BYTES: f64 = 15e6;
 pub fn check_scene(file: &SceneFile) -> Result<CheckReport, Error> {
     let mut model = RopeModel::new(file, None)?;
     model.check_steps()?;
-    report(model).map_err(Error::Model)
+    let sizing = RopeSizing::of(&file.scene).map(|sizing| sizing.summary());
+    report(model, sizing).map_err(Error::Model)
 }
 
-fn report(model: RopeModel) -> Result<CheckReport, ModelError> {
+fn report(model: RopeModel, sizing: Option<SizingSummary>) -> Result<CheckReport, ModelError> {
     let mesh = &model.mesh.mesh;
     let fields = model.analysis.model().contributions.iter().find_map(|c| c.fields());
     let state_bytes_per_point = fields.map_or(0, |f| f.state_bytes_per_point());
@@ -94,6 +98,7 @@ fn report(model: RopeModel) -> Result<CheckReport, ModelError> {
         system,
         state_bytes_per_point,
         memory_mb: memory / 1e6,
+        sizing,
         ignored: model.ignored,
     })
 }
@@ -153,6 +158,12 @@ impl fmt::Display for CheckReport {
             0 => writeln!(f, "  state    none: the law is elastic")?,
             bytes => writeln!(f, "  state    {bytes} bytes per integration point")?,
         }
-        writeln!(f, "  memory   about {:.0} MB", self.memory_mb)
+        writeln!(f, "  memory   about {:.0} MB", self.memory_mb)?;
+        if let Some(sizing) = &self.sizing {
+            for (i, line) in sizing.to_string().lines().enumerate() {
+                writeln!(f, "  {:<8} {line}", if i == 0 { "sizing" } else { "" })?;
+            }
+        }
+        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`document`]: TOML text with positions, checked against a schema, and errors that show the place;
 //! - [`scene`]: what a user writes, as plain data, and its expansion into a program of motions and loads;
+//! - [`sizing`]: what follows of a rope from its yarns, masses and diameters;
 //! - [`law`]: laws built from what a scene says;
 //! - [`model`]: a scene made ready to solve;
 //! - [`check`]: what a scene amounts to, before solving;
@@ -65,5 +66,6 @@ pub mod point;
 pub mod progress;
 pub mod run;
 pub mod scene;
+pub mod sizing;
 
 pub use error::{Error, ExitCode};

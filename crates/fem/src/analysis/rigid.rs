@@ -6,14 +6,15 @@ use crate::contribution::Contribution;
 use crate::kinematics::{Kinematics, NodeRule};
 
 /// Names every rigid motion of every body that the prescribed coordinates leave free, such as
-/// `translation along z` or `rotation about x`. Bodies are the connected parts of elements and sections.
+/// `translation along z` or `rotation about x`. Bodies are the connected parts of elements and sections. What slides in
+/// its sections and is held by nothing else is told too: its directions of sliding must not all be parallel.
 #[must_use]
 pub fn rigid_motions(
     kinematics: &Kinematics,
     contributions: &[Box<dyn Contribution>],
     prescribed: &[bool],
 ) -> Vec<String> {
-    let bodies = bodies(kinematics, contributions);
+    let bodies = bodies(kinematics, contributions, true);
     let mut constraints: Vec<Body> = bodies.iter().map(|nodes| Body::new(kinematics, nodes)).collect();
     let mut owner = vec![None; kinematics.node_count()];
     for (b, nodes) in bodies.iter().enumerate() {
@@ -46,8 +47,55 @@ pub fn rigid_motions(
             names.push(if several { format!("body {}: {motion}", b + 1) } else { motion });
         }
     }
+    names.extend(sliding_motions(kinematics, contributions, prescribed));
     names
 }
+
+/// Translations of bodies of elements along the one direction in which they slide in all their sections.
+fn sliding_motions(
+    kinematics: &Kinematics,
+    contributions: &[Box<dyn Contribution>],
+    prescribed: &[bool],
+) -> Vec<String> {
+    if kinematics.points().iter().all(|point| point.slides.is_empty()) {
+        return Vec::new();
+    }
+    let motion = |nodes: Vec<u32>| {
+        let (mut along, mut name) = (None::<Vector3<f64>>, String::new());
+        for &node in &nodes {
+            let direction = match &kinematics.rules()[node as usize] {
+                NodeRule::Free { first } => {
+                    let held = (0..3).filter(|k| prescribed[*first as usize + k]);
+                    let held: Vec<Vector3<f64>> = held.map(|k| Vector3::ith(k, 1.0)).collect();
+                    if along.is_some_and(|d| held.iter().any(|axis| axis.dot(&d).abs() > PARALLEL)) {
+                        return None;
+                    }
+                    continue;
+                }
+                NodeRule::Tied { point, slide: Some((rho, direction)), .. } => {
+                    let point = &kinematics.points()[*point as usize];
+                    let part = point.slides.iter().position(|c| c == rho).filter(|_| !prescribed[*rho as usize])?;
+                    name = format!("part {} of section {}", part + 1, point.name);
+                    *direction
+                }
+                NodeRule::Tied { slide: None, .. } => return None,
+            };
+            if along.get_or_insert(direction).cross(&direction).norm() > PARALLEL {
+                return None;
+            }
+        }
+        along.map(|direction| format!("{name}: sliding along {}", name_direction(&direction)))
+    };
+    let mut bodies = bodies(kinematics, contributions, false);
+    // Tied nodes first: they give the direction that free nodes may hold.
+    for nodes in &mut bodies {
+        nodes.sort_by_key(|&node| matches!(kinematics.rules()[node as usize], NodeRule::Free { .. }));
+    }
+    bodies.into_iter().filter_map(motion).collect()
+}
+
+/// Sine of the angle below which directions count as parallel.
+const PARALLEL: f64 = 1e-6;
 
 /// Constraints on the six rigid motions of one body: `sum rows^T rows`.
 struct Body {
@@ -107,15 +155,15 @@ fn name_direction(v: &Vector3<f64>) -> String {
     format!("({:.2}, {:.2}, {:.2})", unit.x, unit.y, unit.z)
 }
 
-/// Nodes of every connected body, in the order of their first nodes.
-fn bodies(kinematics: &Kinematics, contributions: &[Box<dyn Contribution>]) -> Vec<Vec<u32>> {
+/// Nodes of every connected body, in the order of their first nodes; sections connect or do not.
+fn bodies(kinematics: &Kinematics, contributions: &[Box<dyn Contribution>], by_sections: bool) -> Vec<Vec<u32>> {
     let mut parent: Vec<u32> = (0..kinematics.node_count() as u32).collect();
     for c in contributions {
         for e in 0..c.element_count() {
             unite(&mut parent, c.element_nodes(e));
         }
     }
-    for point in kinematics.points() {
+    for point in kinematics.points().iter().filter(|_| by_sections) {
         unite(&mut parent, &point.nodes);
     }
     let mut index = vec![usize::MAX; parent.len()];

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use crate::kinematics::ReferencePoint;
+
 /// A value as a function of the fraction of a step, 0 to 1, and of the value reached before the step.
 pub type Path = Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
@@ -79,6 +81,37 @@ pub struct Step {
     pub increments: Increments,
     /// Fractions in \]0, 1\[ at which a path has a corner, rising: automatic increments end there.
     pub knots: Vec<f64>,
+}
+
+impl Prescription {
+    /// A coordinate that goes linearly from where it stands to a value \[mm or rad\].
+    #[must_use]
+    pub fn ramp(coordinate: u32, value: f64) -> Self {
+        Self { coordinate, path: Arc::new(move |fraction, reached| reached + (value - reached) * fraction) }
+    }
+}
+
+impl Step {
+    /// A step of one second in which nothing is prescribed yet.
+    #[must_use]
+    pub fn new(name: &str, increments: Increments) -> Self {
+        let (prescriptions, loads, knots) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.into(), duration: 1.0, prescriptions, loads, increments, knots }
+    }
+
+    /// Moves a coordinate linearly from where it stands to a value \[mm or rad\]; what was said of it before is dropped.
+    #[must_use]
+    pub fn prescribe(mut self, coordinate: u32, value: f64) -> Self {
+        self.prescriptions.retain(|p| p.coordinate != coordinate);
+        self.prescriptions.push(Prescription::ramp(coordinate, value));
+        self
+    }
+
+    /// Moves all coordinates of a reference point to zero, where they stand at first.
+    #[must_use]
+    pub fn hold(self, point: &ReferencePoint) -> Self {
+        point.coordinates().fold(self, |step, coordinate| step.prescribe(coordinate, 0.0))
+    }
 }
 
 /// Settings of the Newton iteration and of the stepping.

@@ -2,7 +2,8 @@
 //!
 //! A free node owns three coordinates, its displacement. A reference point owns six, its displacement and its rotation
 //! vector, and carries the nodes of its section: rigidly, or with one coordinate more per node, its motion along a
-//! direction of the section (a radius). Every tie is the same mechanism: a position `x(q)`, its first derivative (which
+//! direction of the section (a radius), or with one coordinate more per part of the section that slides as a whole. Every
+//! tie is the same mechanism: a position `x(q)`, its first derivative (which
 //! moves forces and stiffness from nodes to coordinates) and its second (a term of the tangent).
 
 mod map;
@@ -16,12 +17,24 @@ use nalgebra::{Matrix3, Vector3};
 use crate::FemError;
 
 /// How the nodes of a section follow their reference point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SectionKind {
     /// As a rigid body.
     Rigid,
     /// As a rigid body, but each node slides freely along its own radius.
     Radial,
+    /// As a rigid body, but these parts of it slide freely, each as a whole along its own direction. Nodes that belong to
+    /// no part do not slide.
+    Sliding(Vec<Slide>),
+}
+
+/// Nodes of a section that slide together: `x = c + R (X - C + rho d)`, with one coordinate `rho` \[mm\] for all of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slide {
+    /// Direction `d` in the reference configuration, of any length but zero.
+    pub direction: Vector3<f64>,
+    /// The nodes.
+    pub nodes: Vec<u32>,
 }
 
 /// A point whose six coordinates (displacement \[mm\], rotation vector \[rad\]) move a section.
@@ -35,6 +48,8 @@ pub struct ReferencePoint {
     pub nodes: Vec<u32>,
     /// Index of its first coordinate.
     pub first: u32,
+    /// Coordinates of the parts that slide, in the order of [`SectionKind::Sliding`]; none otherwise.
+    pub slides: Vec<u32>,
 }
 
 /// Which coordinates move a node.
@@ -76,15 +91,34 @@ pub struct Section {
     pub axis: Vector3<f64>,
     /// Nodes of the section.
     pub nodes: Vec<u32>,
-    /// Rigid or free in radius.
+    /// Rigid, free in radius or sliding in parts.
     pub kind: SectionKind,
+}
+
+impl ReferencePoint {
+    /// Its six coordinates: displacement, then rotation vector.
+    #[must_use]
+    pub fn coordinates(&self) -> std::ops::Range<u32> {
+        self.first..self.first + 6
+    }
+}
+
+impl Section {
+    /// A rigid section.
+    #[must_use]
+    pub fn rigid(name: &str, position: Vector3<f64>, nodes: &[u32]) -> Self {
+        let (axis, kind) = (Vector3::z(), SectionKind::Rigid);
+        Self { name: name.into(), position, axis, nodes: nodes.to_vec(), kind }
+    }
 }
 
 impl Kinematics {
     /// Numbers the coordinates: free nodes in node order, then per section the point and its sliding nodes.
     ///
     /// # Errors
-    /// [`FemError::NodeTiedTwice`], [`FemError::UnknownNode`], [`FemError::EmptySection`].
+    /// [`FemError::NodeTiedTwice`], [`FemError::UnknownNode`], [`FemError::EmptySection`],
+    /// [`FemError::DegenerateSection`]; [`FemError::BadSlide`] for a part without nodes or direction, and for one with a
+    /// node that is not of its section or slides already.
     pub fn new(positions: Vec<Vector3<f64>>, sections: Vec<Section>) -> Result<Self, FemError> {
         let mut owner: Vec<Option<u32>> = vec![None; positions.len()];
         for (index, section) in sections.iter().enumerate() {
@@ -109,11 +143,18 @@ impl Kinematics {
         for section in sections {
             let first = next;
             next += 6;
-            if section.kind == SectionKind::Radial {
-                free_radii(&section, &positions, &mut rules, &mut next);
+            let mut slides = Vec::new();
+            match &section.kind {
+                SectionKind::Rigid => {}
+                SectionKind::Radial => free_radii(&section, &positions, &mut rules, &mut next),
+                SectionKind::Sliding(parts) => {
+                    slides = (next..).take(parts.len()).collect();
+                    free_parts(&section.name, points.len() as u32, parts, &slides, &mut rules)?;
+                    next += parts.len() as u32;
+                }
             }
             let Section { name, position, nodes, .. } = section;
-            points.push(ReferencePoint { name, position, nodes, first });
+            points.push(ReferencePoint { name, position, nodes, first, slides });
         }
         Ok(Self { positions, rules, points, coordinates: next as usize })
     }
@@ -317,6 +358,30 @@ fn free_radii(section: &Section, positions: &[Vector3<f64>], rules: &mut [NodeRu
             *next += 1;
         }
     }
+}
+
+/// Gives each part of section `index` its sliding coordinate.
+fn free_parts(
+    name: &str,
+    index: u32,
+    parts: &[Slide],
+    coordinates: &[u32],
+    rules: &mut [NodeRule],
+) -> Result<(), FemError> {
+    for (number, (part, &coordinate)) in parts.iter().zip(coordinates).enumerate() {
+        let refuse = || FemError::BadSlide { name: name.into(), part: number + 1 };
+        let direction = part.direction.try_normalize(0.0).filter(|d| d.iter().all(|c| c.is_finite()));
+        let direction = direction.filter(|_| !part.nodes.is_empty()).ok_or_else(refuse)?;
+        for &node in &part.nodes {
+            match rules.get_mut(node as usize) {
+                Some(NodeRule::Tied { point, slide: slide @ None, .. }) if *point == index => {
+                    *slide = Some((coordinate, direction));
+                }
+                _ => return Err(refuse()),
+            }
+        }
+    }
+    Ok(())
 }
 
 /// 4x4 block that couples a rotation vector and a sliding coordinate.

@@ -44,6 +44,30 @@ pub fn touching_radius(strands: usize, radius: f64, lay: Lay) -> Result<f64, Geo
     Ok(0.5 * (low + high))
 }
 
+/// Helix radii \[mm\] of two strands of any radii \[mm\] that lie opposite to each other and touch.
+///
+/// Strands of one material carry tension in proportion to their sections and press equally on each other, so that
+/// T_1 a_1 = T_2 a_2 for small lay angles: a_1 = (r_1 + r_2) r_2^2/(r_1^2 + r_2^2), a_2 likewise, and the thin strand winds
+/// about the thick one. Opposite strands are nearest, a_1 + a_2 apart, in a plane normal to the axis as long as
+/// a_1 a_2 k^2 <= 1. Two of a kind have [`touching_radius`].
+///
+/// # Errors
+/// When a radius is not positive; [`GeometryError::StrandsDoNotFit`] when the lay length is so short that the strands
+/// touch elsewhere first.
+pub fn touching_pair(radii: [f64; 2], lay: Lay) -> Result<[f64; 2], GeometryError> {
+    for radius in radii {
+        check::positive(Parameter::Radius, radius)?;
+    }
+    let [first, second] = radii.map(|radius| radius * radius);
+    let apart = radii[0] + radii[1];
+    let helices = [apart * second / (first + second), apart * first / (first + second)];
+    if helices[0] * helices[1] * lay.rate().powi(2) > 1.0 {
+        let lay_length = lay.lay_length();
+        return Err(GeometryError::StrandsDoNotFit { strands: 2, radius: 0.5 * apart, lay_length });
+    }
+    Ok(helices)
+}
+
 /// Least distance \[mm\] between the axis of one strand and those of the others: helix radius `a` \[mm\], twist rate
 /// `k`.
 fn least_distance(strands: usize, a: f64, k: f64) -> f64 {

@@ -30,6 +30,8 @@ pub enum Quantity {
     StrandAngle,
     /// Angle of the strands in the rope \[rad\].
     LayAngle,
+    /// Length of rope per turn of a strand \[mm\].
+    LayLength,
     /// Linear density of the rope \[tex\].
     RopeTex,
     /// Solid area over area of the section of a strand \[-\].
@@ -42,7 +44,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::FilamentDtex,
         Self::FilamentDiameter,
         Self::FilamentsPerYarn,
@@ -55,6 +57,7 @@ impl Quantity {
         Self::Coating,
         Self::StrandAngle,
         Self::LayAngle,
+        Self::LayLength,
         Self::RopeTex,
         Self::Packing,
         Self::StrandRadius,
@@ -104,6 +107,7 @@ impl fmt::Display for Quantity {
             Self::Coating => "mass of coating over mass of fibre",
             Self::StrandAngle => "surface angle of the strand [rad]",
             Self::LayAngle => "lay angle [rad]",
+            Self::LayLength => "lay length [mm]",
             Self::RopeTex => "linear density of the rope [tex]",
             Self::Packing => "packing of the strand",
             Self::StrandRadius => "radius of a strand [mm]",

@@ -2,7 +2,7 @@
 
 use super::Quantity;
 use crate::touching_radius_at_angle;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// A relation between quantities.
@@ -20,6 +20,8 @@ pub enum Relation {
     Packing,
     /// Outer diameter = 2 (a + r), a the helix radius of touching circles at the lay angle.
     Touching,
+    /// Lay length x tan(lay angle) = 2 pi a, a as before.
+    Lay,
 }
 
 /// Length of rope-yarn per length of strand, averaged over a section with evenly spread rope-yarns:
@@ -31,8 +33,13 @@ pub fn strand_contraction(surface_angle: f64) -> f64 {
 
 impl Relation {
     /// All of them, in the order in which they are used.
-    pub const ALL: [Self; 6] =
-        [Self::Yarn, Self::Filament, Self::Fibre, Self::Contraction, Self::Packing, Self::Touching];
+    pub const ALL: [Self; 7] =
+        [Self::Yarn, Self::Filament, Self::Fibre, Self::Contraction, Self::Packing, Self::Touching, Self::Lay];
+
+    /// Whether it takes the helix radius from touching circles.
+    pub(super) fn needs_touching(self) -> bool {
+        matches!(self, Self::Touching | Self::Lay)
+    }
 
     /// The quantities that it binds; the first one is told when the relation is redundant.
     pub fn quantities(self) -> &'static [Quantity] {
@@ -44,11 +51,12 @@ impl Relation {
             Self::Contraction => &[Q::RopeTex, Q::FibreTex, Q::Coating, Q::StrandAngle, Q::LayAngle],
             Self::Packing => &[Q::Packing, Q::RopeTex, Q::Density, Q::LayAngle, Q::StrandRadius, Q::Strands],
             Self::Touching => &[Q::OuterDiameter, Q::StrandRadius, Q::LayAngle, Q::Strands],
+            Self::Lay => &[Q::LayLength, Q::StrandRadius, Q::LayAngle, Q::Strands],
         }
     }
 
-    /// Logarithm of the left side over the right side; monotonic in every quantity.
-    fn residual(self, value: impl Fn(Quantity) -> f64) -> f64 {
+    /// Logarithm of the left side over the right side; monotonic in every quantity. `gap` is that of the strands.
+    pub(super) fn residual(self, gap: f64, value: impl Fn(Quantity) -> f64) -> f64 {
         use Quantity as Q;
         let ln = |quantity| value(quantity).ln();
         match self {
@@ -69,15 +77,19 @@ impl Relation {
                 ln(Q::RopeTex) - ln(Q::Density) - ln(Q::Packing) - area.ln()
             }
             Self::Touching => {
-                let ratio = touching_radius_at_angle(value(Q::Strands) as usize, 1.0, value(Q::LayAngle));
-                ln(Q::OuterDiameter) - ln(Q::StrandRadius) - ratio.map_or(f64::NAN, |a| (2.0 * (1.0 + a)).ln())
+                let ratio = helix_radius(gap, &value);
+                ln(Q::OuterDiameter) - ln(Q::StrandRadius) - (2.0 * (1.0 + ratio)).ln()
+            }
+            Self::Lay => {
+                let around = TAU * helix_radius(gap, &value);
+                ln(Q::LayLength) + value(Q::LayAngle).tan().ln() - ln(Q::StrandRadius) - around.ln()
             }
         }
     }
 
     /// The value of `unknown` that fulfils the relation, `known` giving the others; `None` when there is none.
-    pub(super) fn solve(self, unknown: Quantity, known: impl Fn(Quantity) -> f64) -> Option<f64> {
-        let residual = |t: f64| self.residual(|q| if q == unknown { unknown.at(t) } else { known(q) });
+    pub(super) fn solve(self, unknown: Quantity, gap: f64, known: impl Fn(Quantity) -> f64) -> Option<f64> {
+        let residual = |t: f64| self.residual(gap, |q| if q == unknown { unknown.at(t) } else { known(q) });
         let (mut low, mut high) = (0.0, 1.0);
         let (at_low, at_high) = (residual(low), residual(high));
         // An angle of exactly zero leaves a residual of rounding.
@@ -95,6 +107,12 @@ impl Relation {
     }
 }
 
+/// Helix radius over the radius of the strands, which are `gap` radii apart.
+fn helix_radius(gap: f64, value: &impl Fn(Quantity) -> f64) -> f64 {
+    let strands = value(Quantity::Strands) as usize;
+    touching_radius_at_angle(strands, 1.0 + 0.5 * gap, value(Quantity::LayAngle)).unwrap_or(f64::NAN)
+}
+
 impl fmt::Display for Relation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -104,6 +122,7 @@ impl fmt::Display for Relation {
             Self::Contraction => "contraction by twist and coating",
             Self::Packing => "solid area of the strands",
             Self::Touching => "touching circular strands",
+            Self::Lay => "lay of touching circular strands",
         })
     }
 }

@@ -1,5 +1,6 @@
 //! What a hierarchy determines, leaves open and contradicts.
 
+use super::pair::solve_pair;
 use super::{Hierarchy, Quantity, Relation};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -59,6 +60,8 @@ pub struct SizingReport {
     pub impossible: Vec<(Relation, Quantity)>,
     /// Values outside their sensible range, see [`Quantity::admissible`]: given ones are not used, derived ones are.
     pub inadmissible: Vec<(Quantity, f64)>,
+    /// See [`Hierarchy::gap`].
+    gap: f64,
 }
 
 impl SizingReport {
@@ -69,15 +72,17 @@ impl SizingReport {
             checks: Vec::new(),
             impossible: Vec::new(),
             inadmissible: Vec::new(),
+            gap: hierarchy.gap.unwrap_or_default(),
         };
         for quantity in Quantity::ALL {
             if let Some(value) = hierarchy.given(quantity) {
                 report.learn(quantity, value, Origin::Given);
             }
         }
-        let mut pending = Relation::ALL.to_vec();
+        let touching = hierarchy.gap.is_some();
+        let mut pending: Vec<_> = Relation::ALL.into_iter().filter(|r| touching || !r.needs_touching()).collect();
         report.check_redundant(&mut pending);
-        while report.derive_one(&mut pending) {
+        while report.derive_one(&mut pending) || report.derive_two(&mut pending) {
             report.check_redundant(&mut pending);
         }
         let open = |relation| Open { relation, unknown: report.unknown(relation) };
@@ -100,6 +105,25 @@ impl SizingReport {
         Quantity::ALL.into_iter().filter(|quantity| !self.known.contains_key(quantity))
     }
 
+    /// The given quantities that a value comes from, each once; of a given one itself.
+    pub fn sources(&self, quantity: Quantity) -> Vec<Quantity> {
+        let (mut open, mut seen, mut given) = (vec![quantity], vec![quantity], Vec::new());
+        while let Some(next) = open.pop() {
+            match self.known.get(&next).map(|known| known.origin) {
+                Some(Origin::Given) => given.push(next),
+                Some(Origin::Derived(relation)) => {
+                    let others = relation.quantities().iter().filter(|q| !seen.contains(q)).copied();
+                    let others: Vec<_> = others.collect();
+                    seen.extend(&others);
+                    open.extend(others);
+                }
+                None => {}
+            }
+        }
+        given.sort_unstable();
+        given
+    }
+
     fn learn(&mut self, quantity: Quantity, value: f64, origin: Origin) {
         let admissible = quantity.is_admissible(value);
         if !admissible {
@@ -120,6 +144,10 @@ impl SizingReport {
         let Some(relation) = lacking_one.map(|i| pending.remove(i)) else {
             return false;
         };
+        // Straight strands have no lay length.
+        if relation == Relation::Lay && self.value(Quantity::LayAngle) == Some(0.0) {
+            return true;
+        }
         for quantity in self.unknown(relation) {
             match self.solve(relation, quantity) {
                 Some(value) => self.learn(quantity, value, Origin::Derived(relation)),
@@ -127,6 +155,30 @@ impl SizingReport {
             }
         }
         true
+    }
+
+    /// Derives two values from the first two relations that lack the same two; false when that leads nowhere.
+    fn derive_two(&mut self, pending: &mut Vec<Relation>) -> bool {
+        for (i, &first) in pending.iter().enumerate() {
+            let mut unknown = self.unknown(first);
+            // The angle has the narrow range.
+            unknown.sort_by_key(|q| *q != Quantity::LayAngle);
+            let &[outer, inner] = unknown.as_slice() else { continue };
+            for &second in &pending[i + 1..] {
+                let lacks = self.unknown(second);
+                if lacks.len() != 2 || !lacks.contains(&outer) || !lacks.contains(&inner) {
+                    continue;
+                }
+                let known = |quantity| self.value(quantity).unwrap_or(f64::NAN);
+                if let Some([x, y]) = solve_pair([first, second], [outer, inner], self.gap, known) {
+                    self.learn(outer, x, Origin::Derived(second));
+                    self.learn(inner, y, Origin::Derived(first));
+                    pending.retain(|relation| ![first, second].contains(relation));
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// Compares both values of the first quantity of every relation that lacks nothing, and takes it off the list.
@@ -144,7 +196,7 @@ impl SizingReport {
     }
 
     fn solve(&self, relation: Relation, unknown: Quantity) -> Option<f64> {
-        relation.solve(unknown, |quantity| self.value(quantity).unwrap_or(f64::NAN))
+        relation.solve(unknown, self.gap, |quantity| self.value(quantity).unwrap_or(f64::NAN))
     }
 }
 

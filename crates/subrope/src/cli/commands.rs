@@ -37,14 +37,15 @@ fn check(path: &Path) -> Result<(), Error> {
 
 /// What a scene holds, in a few lines.
 fn summary(file: &SceneFile) -> String {
-    let Scene { title, strand, law, element, end, constraint, step, .. } = &file.scene;
-    let mesh = match (strand, &file.deck) {
-        (Some(strand), _) => {
-            let mesh = &strand.mesh;
-            format!("{} hexahedra", (mesh.core * mesh.core + 4 * mesh.core * mesh.rings) * mesh.layers)
+    let Scene { title, strand, rope, law, element, end, constraint, step, .. } = &file.scene;
+    let mesh = match (strand, rope, &file.deck) {
+        (Some(strand), ..) => format!("{} hexahedra", strand.mesh.cell_count()),
+        (_, Some(rope), _) => {
+            let strands = rope.strand_count();
+            format!("{} hexahedra in {strands} strands", strands * rope.mesh.cell_count())
         }
-        (None, Some(deck)) => format!("deck {}", deck.display()),
-        (None, None) => "none".to_owned(),
+        (.., Some(deck)) => format!("deck {}", deck.display()),
+        _ => "none".to_owned(),
     };
     let steps: Vec<_> = step.iter().map(|s| s.name.as_str()).collect();
     format!(

@@ -24,7 +24,7 @@ macro_rules! templates {
 }
 
 /// All of them.
-pub(super) static TEMPLATES: [Template; 13] = templates! {
+pub(super) static TEMPLATES: [Template; 14] = templates! {
     "bent_strand_coarse": "a coarse strand bent by 45 degrees: the first minute",
     "bent_strand": "a strand bent to a half circle, with friction between rope-yarns",
     "bent_strand_elastic": "the same without friction",
@@ -34,6 +34,7 @@ pub(super) static TEMPLATES: [Template; 13] = templates! {
     "sub_rope_tension": "three strands laid together, in contact, stretched by 5 %",
     "sub_rope_free_twist": "the same with one end free to turn: how far a rope unlays",
     "sub_rope_cycles": "the same, then twenty cycles of tension: bedding-in, cycle by cycle",
+    "sub_rope_from_tex": "the same sized from its yarns and 90 000 tex, on ends where strands slide",
     "sub_rope_over_cylinder": "three strands under a load, bent over a rigid cylinder",
     "strand_on_rod": "a strand in tension against a rigid rod: identification across the yarns",
     "three_wire_rope": "three elastic wires in tension, to compare with the theory of thin rods",

@@ -1,10 +1,10 @@
 //! Contacts and rigid bodies of a scene.
 
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::Vector3;
 use subrope_contact::{Contact, ContactError, ContactOptions, FrictionTangent, Method, Smoothing, Surface};
 use subrope_fem::kinematics::{Section, SectionKind};
 use subrope_geometry::{Axis, Face, Mesh, surface_area};
-use subrope_material::{PointInput, Request, Response};
+use subrope_material::transverse_modulus;
 
 use super::{MeshModel, ModelError};
 use crate::scene::{self, ContactMethod, ContactSmoothing, ContactTangent, RigidShape, Scene};
@@ -68,7 +68,7 @@ pub(super) fn contacts(
     if scene.contact.is_empty() {
         return Ok(Vec::new());
     }
-    let modulus = transverse_modulus(&scene.law)?;
+    let modulus = transverse_modulus(&*crate::law::build(&scene.law)?)?;
     let mut out = Vec::new();
     for entry in &scene.contact {
         for (name, primary, secondary) in pairs(scene, entry) {
@@ -147,8 +147,7 @@ fn surface(mesh: &Mesh, name: &str, smoothing: Smoothing) -> Result<Surface, Mod
 
 /// Radius of a generated strand, else a length that belongs to the mesh.
 fn size(scene: &Scene, mesh: &MeshModel) -> f64 {
-    let generated = scene.rope.as_ref().map(|r| r.radius).or(scene.strand.as_ref().map(|s| s.radius));
-    generated.unwrap_or_else(|| {
+    scene.strand_radius().unwrap_or_else(|| {
         let low = mesh.mesh.points.iter().fold(Vector3::repeat(f64::INFINITY), |a, p| a.inf(p));
         let high = mesh.mesh.points.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
         0.1 * (high - low).norm()
@@ -157,22 +156,11 @@ fn size(scene: &Scene, mesh: &MeshModel) -> f64 {
 
 /// Radius of a generated strand; of a surface of a deck 2.5 times the side of a mean face, as on a ring of sixteen.
 fn surface_size(scene: &Scene, mesh: &Mesh, name: &str) -> Result<f64, ModelError> {
-    let generated = scene.rope.as_ref().map(|r| r.radius).or(scene.strand.as_ref().map(|s| s.radius));
-    match generated {
+    match scene.strand_radius() {
         Some(radius) => Ok(radius),
         None => {
             let faces = faces(mesh, name)?;
             Ok(2.5 * (surface_area(mesh, faces)? / faces.len().max(1) as f64).sqrt())
         }
     }
-}
-
-/// Stiffness `dS_22/dE_22` of the law across the fibres at rest \[MPa\].
-fn transverse_modulus(law: &scene::Law) -> Result<f64, ModelError> {
-    let law = crate::law::build(law)?;
-    let old = vec![0.0; law.state_len()];
-    let mut new = old.clone();
-    let mut response = Response { tangent: Matrix6::zeros(), ..Response::default() };
-    law.evaluate(&PointInput::new(nalgebra::Matrix3::zeros()), &old, &mut new, Request::Tangent, &mut response)?;
-    Ok(response.tangent[(1, 1)])
 }

@@ -43,7 +43,7 @@ impl MeshModel {
         let kind = cell_kind(scene.element.formulation);
         let (model, ignored) = match (&scene.strand, &scene.rope, &scene.deck, deck) {
             (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
-            (None, Some(rope), ..) => (Self::generate_rope(rope, kind)?, Vec::new()),
+            (None, Some(rope), ..) => (Self::generate_rope(scene, rope, kind)?, Vec::new()),
             (None, None, Some(entry), Some(path)) => Self::read(entry, path)?,
             _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
         };
@@ -63,8 +63,8 @@ impl MeshModel {
         Ok(Self { mesh, frames, strand: Some(strand), rope: None })
     }
 
-    fn generate_rope(entry: &scene::Rope, kind: CellKind) -> Result<Self, ModelError> {
-        let meshed = super::rope::rope_mesh(entry, kind)?;
+    fn generate_rope(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Result<Self, ModelError> {
+        let meshed = super::rope::rope_mesh(scene, entry, kind)?;
         let frames = meshed.frames()?;
         let RopeMesh { mesh, strand_of_cell, strands, shape, .. } = meshed;
         Ok(Self { mesh, frames, strand: None, rope: Some(RopeModelShape { strand_of_cell, strands, shape }) })

@@ -14,7 +14,7 @@ pub use mesh::{MeshModel, RopeModelShape};
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
-use subrope_fem::kinematics::{Kinematics, Section, SectionKind};
+use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};
 use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError};
 use subrope_io::Ignored;
@@ -80,7 +80,7 @@ impl RopeModel {
         let (mesh, ignored) = MeshModel::new(scene, deck)?;
         let solid = law::solid(&mesh, &scene.law, scene.element.formulation)?;
         let mut positions = mesh.mesh.points.clone();
-        let mut sections = scene.end.iter().map(|end| section(end, &mesh)).collect::<Result<Vec<_>, _>>()?;
+        let mut sections = scene.end.iter().map(|end| section_of(end, scene, &mesh)).collect::<Result<Vec<_>, _>>()?;
         let bodies = contact::rigid_bodies(scene, &mesh, &mut positions, &mut sections)?;
         let contacts = contact::contacts(scene, &mesh, &bodies, &positions)?;
         let kinematics = Kinematics::new(positions, sections)?;
@@ -151,19 +151,33 @@ fn newton(scene: &Scene) -> NewtonOptions {
 }
 
 /// The section that an end ties to its reference point.
-fn section(end: &End, mesh: &MeshModel) -> Result<Section, ModelError> {
+fn section_of(end: &End, scene: &Scene, mesh: &MeshModel) -> Result<Section, ModelError> {
     let nodes = mesh.node_set(end.set())?.to_vec();
     let centroid = mesh.centroid(&nodes);
     let position = end.point.map_or(centroid, Vector3::from);
-    let kind = match end.kind {
-        EndKind::Rigid => SectionKind::Rigid,
-        EndKind::Radial => SectionKind::Radial,
-    };
-    let axis = match kind {
-        SectionKind::Rigid => Vector3::z(),
-        SectionKind::Radial => mesh.section_normal(&nodes, end)?,
+    let (axis, kind) = match end.kind {
+        EndKind::Rigid => (Vector3::z(), SectionKind::Rigid),
+        EndKind::Radial => (mesh.section_normal(&nodes, end)?, SectionKind::Radial),
+        EndKind::Sliding => (Vector3::z(), SectionKind::Sliding(slides(end, scene, mesh)?)),
     };
     Ok(Section { name: end.name.clone(), position, axis, nodes, kind })
+}
+
+/// The strands of an end of a rope about z, each with the radius of its centre.
+fn slides(end: &End, scene: &Scene, mesh: &MeshModel) -> Result<Vec<Slide>, ModelError> {
+    let strands = scene.rope.as_ref().map_or(0, |rope| rope.strands);
+    let set = end.set().to_uppercase();
+    let own = (1..=strands).map(|i| format!("{set}_{i}")).filter(|name| mesh.node_set(name).is_ok());
+    let mut sets: Vec<String> = own.collect();
+    if sets.is_empty() {
+        sets.push(set);
+    }
+    let slide = |name: &String| {
+        let nodes = mesh.node_set(name)?.to_vec();
+        let centre = mesh.centroid(&nodes);
+        Ok(Slide { direction: Vector3::new(centre.x, centre.y, 0.0), nodes })
+    };
+    sets.iter().map(slide).collect()
 }
 
 impl From<FemError> for ModelError {

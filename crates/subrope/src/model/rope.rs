@@ -6,21 +6,25 @@ use subrope_geometry::{
 };
 
 use super::ModelError;
-use crate::scene;
+use crate::scene::{self, Scene};
+use crate::sizing::RopeSizing;
 
 /// Strands, sets and fibre fields.
-pub(super) fn rope_mesh(entry: &scene::Rope, kind: CellKind) -> Result<RopeMesh, ModelError> {
-    Ok(rope_of(entry, kind).mesh()?)
+pub(super) fn rope_mesh(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Result<RopeMesh, ModelError> {
+    Ok(rope_of(scene, entry, kind).mesh()?)
 }
 
-fn rope_of(entry: &scene::Rope, kind: CellKind) -> Rope {
+/// The radius of a checked scene is given or follows; what has neither is refused by the geometry.
+fn rope_of(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Rope {
+    let sizing = RopeSizing::of(scene);
+    let radius = entry.radius.or(sizing.as_ref().and_then(RopeSizing::radius)).unwrap_or(f64::NAN);
     let section = section(&entry.mesh);
     let strand = |radius: f64, yarns: &scene::Yarns| RopeStrand { radius, yarns: yarns_of(yarns), section };
     Rope {
         strands: entry.strands,
-        outer: strand(entry.radius, &entry.yarns),
+        outer: strand(radius, &entry.yarns),
         core: entry.core.as_ref().map(|core| strand(core.radius, &core.yarns)),
-        lay: RopeLay { by: lay_of(entry), handedness: hand_of(entry.hand) },
+        lay: RopeLay { by: lay_of(entry, sizing.as_ref()), handedness: hand_of(entry.hand) },
         helix_radius: entry.helix_radius.map_or(HelixRadius::Touching { gap: entry.gap }, HelixRadius::Given),
         compaction: if entry.compaction > 0.0 { Compaction::Degree(entry.compaction) } else { Compaction::None },
         length: entry.length,
@@ -41,12 +45,13 @@ fn hand_of(hand: scene::Hand) -> Handedness {
     }
 }
 
-/// A checked scene gives exactly one.
-fn lay_of(entry: &scene::Rope) -> LayBy {
-    match (entry.lay_angle, entry.lay_length, entry.outer_diameter) {
-        (_, Some(length), _) => LayBy::Length(length),
-        (_, _, Some(diameter)) => LayBy::OuterDiameter(diameter),
-        (angle, ..) => LayBy::Angle(angle.unwrap_or_default().to_radians()),
+/// A checked scene gives one, or it follows.
+fn lay_of(entry: &scene::Rope, sizing: Option<&RopeSizing>) -> LayBy {
+    match (entry.lay_angle, entry.lay_length, sizing.and_then(RopeSizing::lay_angle), entry.outer_diameter) {
+        (Some(angle), ..) => LayBy::Angle(angle.to_radians()),
+        (_, Some(length), ..) => LayBy::Length(length),
+        (_, _, Some(angle), _) => LayBy::Angle(angle),
+        (.., diameter) => LayBy::OuterDiameter(diameter.unwrap_or(f64::NAN)),
     }
 }
 

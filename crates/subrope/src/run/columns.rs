@@ -57,6 +57,7 @@ pub fn columns(model: &RopeModel) -> Vec<Column> {
         for (name, unit) in MOTIONS.iter().chain(&REACTIONS) {
             out.push(Column::new(format!("{}_{name}", point.name), *unit));
         }
+        out.extend((1..=point.slides.len()).map(|i| Column::new(format!("{}_slide_{i}", point.name), "mm")));
     }
     out.extend(ENERGIES.iter().chain(&COUNTS).map(|(n, u)| Column::new(*n, *u)));
     for strand in 1..=model.mesh.rope.as_ref().map_or(0, |r| r.strands.len()) {
@@ -76,12 +77,13 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
     let mut out =
         vec![analysis.time(), record.step_index as f64, record.increment as f64, record.fraction, record.length];
     let kinematics = &analysis.model().kinematics;
-    for point in 0..kinematics.points().len() {
-        let (u, r) = kinematics.point_motion(point, analysis.coordinates());
-        let (force, moment) = analysis.point_reaction(point);
+    for (index, point) in kinematics.points().iter().enumerate() {
+        let (u, r) = kinematics.point_motion(index, analysis.coordinates());
+        let (force, moment) = analysis.point_reaction(index);
         for vector in [u, r, force, moment] {
             out.extend_from_slice(vector.as_slice());
         }
+        out.extend(point.slides.iter().map(|&c| analysis.coordinates()[c as usize]));
     }
     let totals = analysis.totals();
     out.extend([

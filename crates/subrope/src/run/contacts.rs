@@ -3,6 +3,7 @@
 #[cfg(feature = "hdf5")]
 use nalgebra::Vector3;
 use serde::Serialize;
+pub use subrope_contact::contacts;
 #[cfg(feature = "hdf5")]
 use subrope_contact::foot::Place;
 use subrope_contact::{Contact, ContactReport};
@@ -34,11 +35,6 @@ pub struct PairSummary {
     pub friction_work_mj: f64,
     /// Normal penalty \[MPa/mm\].
     pub penalty_mpa_per_mm: f64,
-}
-
-/// All contacts of an analysis.
-pub fn contacts(analysis: &Analysis) -> impl Iterator<Item = &Contact> {
-    analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref::<Contact>())
 }
 
 /// One entry per pair.

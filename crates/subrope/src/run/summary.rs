@@ -14,6 +14,7 @@ use super::session::integration_points;
 use super::strands::{self, StrandSummary};
 use crate::model::RopeModel;
 use crate::scene::SceneFile;
+use crate::sizing::{RopeSizing, SizingSummary};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -67,6 +68,9 @@ pub struct Summary {
     pub cycles: Vec<CycleRow>,
     /// Findings on a bent strand, where there is one.
     pub findings: Option<Findings>,
+    /// What is given of a rope and what follows, where it is sized.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizing: Option<SizingSummary>,
     /// Sizes.
     pub size: SizeSummary,
     /// Counts of increments and iterations.
@@ -92,6 +96,9 @@ pub struct PointSummary {
     pub force_n: [f64; 3],
     /// Reaction moment about its current position.
     pub moment_n_mm: [f64; 3],
+    /// How far each strand has slid outwards, at a sliding end; the force along it is zero.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub slides_mm: Vec<f64>,
 }
 
 /// Energies at the end.
@@ -200,6 +207,7 @@ impl Summary {
             strands: strands::strands(&model.mesh, analysis),
             cycles: cycles.to_vec(),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
+            sizing: RopeSizing::of(&file.scene).map(|sizing| sizing.summary()),
             size: sizes(model),
             counts: counts(model),
             seconds: times(model, seconds),
@@ -276,6 +284,7 @@ fn points(model: &RopeModel) -> BTreeMap<String, PointSummary> {
             rotation_rad: r.into(),
             force_n: force.into(),
             moment_n_mm: moment.into(),
+            slides_mm: point.slides.iter().map(|&c| analysis.coordinates()[c as usize]).collect(),
         };
         (point.name.clone(), summary)
     });

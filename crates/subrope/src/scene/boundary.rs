@@ -14,7 +14,9 @@ pub struct End {
     /// The node set it carries; the same name as the point when left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set: Option<String>,
-    /// "rigid": the nodes move as one body. "radial": as one body, but each node is free along its radius.
+    /// "rigid": the nodes move as one body. "radial": as one body, but each node is free along its radius. "sliding",
+    /// for the ends of a [rope]: as one body, but each strand is free to move along the radius on which it lies, without
+    /// force; the radius turns with the end, a core stays.
     #[serde(default)]
     pub kind: EndKind,
     /// Position of the reference point \[mm\]; the centroid of the set's nodes when left out.
@@ -39,6 +41,8 @@ pub enum EndKind {
     Rigid,
     /// As one body, each node free along its radius.
     Radial,
+    /// As one body, each strand of a rope free along the radius of its centre.
+    Sliding,
 }
 
 /// Displacement components of a node set, prescribed throughout the run. A value other than 0 is reached linearly at

@@ -21,12 +21,15 @@ mod prescription;
 mod program;
 mod rope;
 mod sets;
+mod sizing;
 mod solver;
 mod step;
 mod strand;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::sizing::RopeSizing;
 
 pub(crate) use check::check_law;
 
@@ -46,6 +49,7 @@ pub use output::{Field, Output, Precision};
 pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
 pub use rope::{Core, Rope, YarnSense, Yarns};
+pub use sizing::Sizing;
 pub use solver::{LineSearch, Solver, Stabilisation};
 pub use step::{
     Bend, BendAxis, BendEnds, CycleControl, Cycles, Distribution, Incrementation, Increments, NodalForce, PointForce,
@@ -126,6 +130,14 @@ impl Scene {
     #[must_use]
     pub fn length(&self) -> Option<f64> {
         self.strand.as_ref().map(|s| s.length).or(self.rope.as_ref().map(|r| r.length))
+    }
+
+    /// Radius of a strand of the generated strand or rope \[mm\], given or by its sizing.
+    #[must_use]
+    pub fn strand_radius(&self) -> Option<f64> {
+        let sized = || RopeSizing::of(self).and_then(|sizing| sizing.radius());
+        let rope = self.rope.as_ref().and_then(|rope| rope.radius.or_else(sized));
+        self.strand.as_ref().map(|strand| strand.radius).or(rope)
     }
 
     /// Names of all reference points: ends, then rigid bodies.

@@ -3,12 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::sizing::Sizing;
 use super::strand::{Hand, Origin, StrandMesh};
 
 /// Equal strands laid together about z, with or without a straight core, ends plane and normal to z. Its node sets are
 /// `END_A` (lowest z), `END_B`, `ALL`, and for every strand `END_A_1`, `END_B_1`, `SURFACE_NODES_1`, `AXIS_1`; its
-/// surfaces are `LATERAL_1` and so on; a core is the last strand. Give one of `lay_angle`, `lay_length` and
-/// `outer_diameter`.
+/// surfaces are `LATERAL_1` and so on; a core is the last strand. Give `radius` and one of `lay_angle`, `lay_length` and
+/// `outer_diameter`; or leave out the radius, the lay or both where they follow from `linear_density`, `outer_diameter`
+/// and `[rope.sizing]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rope {
@@ -16,9 +18,11 @@ pub struct Rope {
     #[serde(default = "three")]
     #[schemars(range(min = 2))]
     pub strands: usize,
-    /// Radius of a strand \[mm\].
+    /// Radius of a strand \[mm\]; when left out it follows from `outer_diameter`, or from `linear_density` with `density`
+    /// and `packing` in `[rope.sizing]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub radius: f64,
+    pub radius: Option<f64>,
     /// Length along z \[mm\].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub length: f64,
@@ -30,7 +34,12 @@ pub struct Rope {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub lay_length: Option<f64>,
-    /// Diameter over the strands \[mm\], which gives the lay of touching round strands.
+    /// Mass of the rope by its length \[tex\] (g/km).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub linear_density: Option<f64>,
+    /// Diameter over the strands \[mm\], which gives the lay of touching round strands, or their radius when that is left
+    /// out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub outer_diameter: Option<f64>,
@@ -60,6 +69,9 @@ pub struct Rope {
     /// Division of every strand into hexahedra; `lines` is "axis".
     #[serde(default)]
     pub mesh: StrandMesh,
+    /// What is known of its yarns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sizing: Option<Sizing>,
 }
 
 /// Winding of rope-yarns about the axis of their strand. Give either `surface_angle` or `pitch`.
@@ -106,6 +118,12 @@ fn three() -> usize {
 }
 
 impl Rope {
+    /// Whether something beside radius and lay has to agree, or has to give them.
+    #[must_use]
+    pub fn is_sized(&self) -> bool {
+        self.radius.is_none() || self.linear_density.is_some() || self.sizing.is_some()
+    }
+
     /// Number of strands with the core.
     #[must_use]
     pub fn strand_count(&self) -> usize {
@@ -127,6 +145,16 @@ impl Rope {
         let own = ["END_A", "END_B", "SURFACE_NODES", "AXIS"];
         let numbered = (1..=self.strand_count()).flat_map(|i| own.iter().map(move |name| format!("{name}_{i}")));
         ["END_A", "END_B", "ALL"].map(str::to_owned).into_iter().chain(numbered).collect()
+    }
+
+    /// Names of the sets of its ends: of all strands, then of each outer one.
+    #[must_use]
+    pub fn end_sets(&self) -> Vec<String> {
+        let all = ["END_A", "END_B"].map(str::to_owned);
+        all.iter()
+            .cloned()
+            .chain((1..=self.strands).flat_map(|i| all.clone().map(|end| format!("{end}_{i}"))))
+            .collect()
     }
 
     /// Names of its surfaces.

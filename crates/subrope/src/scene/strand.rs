@@ -101,6 +101,14 @@ pub struct StrandMesh {
     pub area: SectionArea,
 }
 
+impl StrandMesh {
+    /// Number of hexahedra.
+    #[must_use]
+    pub fn cell_count(&self) -> usize {
+        (self.core * self.core + 4 * self.core * self.rings) * self.layers
+    }
+}
+
 impl Default for StrandMesh {
     fn default() -> Self {
         let (lines, area) = (MeshLines::Axis, SectionArea::Exact);

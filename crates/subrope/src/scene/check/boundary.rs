@@ -1,6 +1,8 @@
 //! Checks of reference points and constraints.
 
 use super::{Checker, top};
+use crate::document::{Location, ProblemKind};
+use crate::scene::{End, EndKind};
 
 impl Checker<'_> {
     pub(super) fn boundary(&mut self) {
@@ -19,6 +21,9 @@ impl Checker<'_> {
             }
             let key = if end.set.is_some() { "set" } else { "name" };
             self.node_set(&at.at(key), end.set());
+            if end.kind == EndKind::Sliding {
+                self.sliding(&at, end);
+            }
             if let Some(other) = scene.end[..index].iter().find(|o| o.set().eq_ignore_ascii_case(end.set())) {
                 let cause = format!("the set \"{}\" is already carried by \"{}\"", end.set(), other.name);
                 self.inconsistent(&at.at(key), cause, "a node follows one reference point only");
@@ -30,6 +35,22 @@ impl Checker<'_> {
             if constraint.components.values().iter().all(Option::is_none) {
                 self.inconsistent(&at.at("components"), "the constraint has no component", "for example { uz = 0.0 }");
             }
+        }
+    }
+
+    /// Only the end of a strand of a rope has a radius to slide on.
+    fn sliding(&mut self, at: &Location, end: &End) {
+        let Some(rope) = &self.scene.rope else {
+            let cause = format!("the end \"{}\" is \"sliding\", and the scene has no strands of a [rope]", end.name);
+            let help = "give a [rope], or kind = \"rigid\" or \"radial\" (each node free along its own radius)";
+            return self.inconsistent(&at.at("kind"), cause, help);
+        };
+        let allowed = rope.end_sets();
+        if !allowed.iter().any(|set| set.eq_ignore_ascii_case(end.set())) {
+            let key = if end.set.is_some() { "set" } else { "name" };
+            let kind =
+                ProblemKind::UnknownName { what: "end of the rope's strands", found: end.set().to_owned(), allowed };
+            self.report(&at.at(key), kind, "a \"sliding\" end carries the end of all strands or of one");
         }
     }
 }

@@ -7,20 +7,8 @@ use crate::scene::{Contact, MeshLines, RigidShape, Rope, Yarns};
 impl Checker<'_> {
     pub(super) fn rope(&mut self, rope: &Rope) {
         let at = top("rope");
-        let lays = [
-            ("lay_angle", rope.lay_angle.is_some()),
-            ("lay_length", rope.lay_length.is_some()),
-            ("outer_diameter", rope.outer_diameter.is_some()),
-        ];
-        let mut given = lays.iter().filter(|(_, g)| *g);
-        match (given.next(), given.next()) {
-            (None, _) => self.missing(&at, "lay_angle", "or `lay_length` (mm) or `outer_diameter` (mm)"),
-            (Some((first, _)), Some((second, _))) => {
-                let cause = format!("`{first}` and `{second}` exclude each other");
-                self.inconsistent(&at.at(*second), cause, "one of them gives the lay");
-            }
-            _ => {}
-        }
+        self.lay(&at, rope);
+        self.sizing(&at, rope);
         if rope.mesh.lines == MeshLines::Yarns {
             let cause = "the mesh lines of a rope's strands run along their axes";
             self.inconsistent(&at.at("mesh").at("lines"), cause, "lines = \"axis\"");
@@ -32,6 +20,26 @@ impl Checker<'_> {
         self.yarns(&at.at("yarns"), &rope.yarns);
         if let Some(core) = &rope.core {
             self.yarns(&at.at("core").at("yarns"), &core.yarns);
+        }
+    }
+
+    /// One key gives the lay, unless sizing has the diameter give the radius or compares it.
+    fn lay(&mut self, at: &Location, rope: &Rope) {
+        let lays = [
+            ("lay_angle", rope.lay_angle.is_some()),
+            ("lay_length", rope.lay_length.is_some()),
+            ("outer_diameter", rope.outer_diameter.is_some() && !rope.is_sized()),
+        ];
+        let mut given = lays.iter().filter(|(_, g)| *g);
+        match (given.next(), given.next()) {
+            (None, _) if !rope.is_sized() => {
+                self.missing(at, "lay_angle", "or `lay_length` (mm) or `outer_diameter` (mm)");
+            }
+            (Some((first, _)), Some((second, _))) => {
+                let cause = format!("`{first}` and `{second}` exclude each other");
+                self.inconsistent(&at.at(*second), cause, "one of them gives the lay");
+            }
+            _ => {}
         }
     }
 

@@ -5,6 +5,7 @@ mod contact;
 mod law;
 mod mesh;
 mod motion;
+mod sizing;
 mod step;
 
 pub(crate) use law::check_law;
