@@ -2,7 +2,7 @@
 """A sub-rope pulled and taken through its first cycle over several meshes, as a Markdown table.
 
     python3 scripts/rope_mesh_study.py [--binary target/release/subrope] [--out out/rope_mesh_study]
-        [--scene scenes/sub_rope_cycles.toml]
+        [--scene scenes/sub_rope_cycles.toml] [--threads 1]
 
 Every member is a run of the binary on a copy of the scene with another mesh and one cycle.
 """
@@ -38,7 +38,7 @@ def run(args, mesh):
     folder.mkdir(parents=True, exist_ok=True)
     scene = folder / "scene.toml"
     scene.write_text(member_scene(args.scene.read_text(), *mesh))
-    command = [args.binary, "run", scene, "--out", folder / "results"]
+    command = [args.binary, "run", scene, "--out", folder / "results", "--threads", args.threads]
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     (folder / "log.txt").write_text(done.stdout + done.stderr)
     if done.returncode:
@@ -54,6 +54,7 @@ def main():
     parser.add_argument("--binary", default="target/release/subrope")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/rope_mesh_study"))
     parser.add_argument("--scene", type=pathlib.Path, default=pathlib.Path("scenes/sub_rope_cycles.toml"))
+    parser.add_argument("--threads", type=int, default=1)
     args = parser.parse_args()
     print("| bricks | unknowns | force N | torque N mm | cycle: hysteresis mJ | transverse mJ | longitudinal mJ |"
           " contact friction mJ | energy error | iterations | s |")

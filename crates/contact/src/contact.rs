@@ -14,7 +14,7 @@ use crate::search::Tree;
 use crate::{ContactError, ContactOptions, FrictionTangent, Method, Surface};
 
 /// How far from its edges a patch counts as near, in its coordinates: its neighbours become candidates too.
-const MARGIN: f64 = 0.6;
+const MARGIN: f64 = 0.3;
 /// Candidates are dropped when so many times more are kept than are near.
 const STALE: usize = 4;
 
