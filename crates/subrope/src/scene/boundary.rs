@@ -15,7 +15,7 @@ pub struct End {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set: Option<String>,
     /// "rigid": the nodes move as one body. "radial": as one body, but each node is free along its radius. "sliding",
-    /// for the ends of a [rope]: as one body, but each strand is free to move along the radius on which it lies, without
+    /// for the ends of a rope: as one body, but each strand is free to move along the radius on which it lies, without
     /// force; the radius turns with the end, a core stays.
     #[serde(default)]
     pub kind: EndKind,
