@@ -20,7 +20,7 @@ pub enum Method {
 /// Tangent of friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FrictionTangent {
-    /// Exact, unsymmetric: quadratic convergence, a factorisation by LU.
+    /// Exact, unsymmetric: quadratic convergence, solved by GMRES.
     #[default]
     Exact,
     /// Its symmetric part: more iterations, each cheaper.
