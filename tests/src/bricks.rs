@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use subrope_fem::solid::{Full, MeanElongation, MeanVolume, SolidBlock, SolidFields, SolidMesh};
 use subrope_fem::{Contribution, FemError};
 use subrope_geometry::{CellKind, Hex8, Hex27, Mesh};
-use subrope_material::Law;
+use subrope_material::{EngineeringConstants, Law, StVenantKirchhoff};
 
 /// A brick and what it averages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,4 +65,23 @@ pub fn constant_frames(mesh: &Mesh, frame: Matrix3<f64>) -> Vec<Matrix3<f64>> {
 #[must_use]
 pub fn fields_of(contributions: &[Box<dyn Contribution>]) -> &dyn SolidFields {
     contributions.iter().find_map(|c| c.fields()).unwrap()
+}
+
+/// The orthotropic law of the races with other programs: E1 300 MPa, E2 = E3 60 MPa, G12 = G13 50 MPa, Poisson's ratios .3,
+/// isotropic across.
+#[must_use]
+pub fn peer_law() -> StVenantKirchhoff {
+    let (e1, e2, nu, g) = (300.0, 60.0, 0.3, 50.0);
+    let constants = EngineeringConstants {
+        e1,
+        e2,
+        e3: e2,
+        nu12: nu,
+        nu13: nu,
+        nu23: nu,
+        g12: g,
+        g13: g,
+        g23: e2 / (2.0 * (1.0 + nu)),
+    };
+    StVenantKirchhoff::orthotropic(&constants).unwrap()
 }

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use subrope::model::{ModelError, RopeModel};
+use subrope::progress::Silent;
+use subrope::run::{RunOptions, RunOutcome};
 use subrope::scene::Scene;
-use subrope_contact::Contact;
 use subrope_fem::FemError;
+use tempfile::TempDir;
 
 use crate::problem::{Recorder, Row};
 
@@ -61,9 +63,16 @@ pub fn scene_file(name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap()
 }
 
-/// The contacts of a run.
-pub fn contacts(run: &Run) -> impl Iterator<Item = &Contact> {
-    run.model.analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref())
+/// Runs a scene with files on one thread; they are in `out` of the folder.
+#[must_use]
+pub fn run_with_files(text: &str) -> (TempDir, RunOutcome) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    let out = folder.path().join("out");
+    let options = RunOptions { folder: Some(&out), threads: Some(1), ..RunOptions::default() };
+    let outcome = subrope::run::run_scene(&path, options, &mut Silent).unwrap();
+    (folder, outcome)
 }
 
 /// Set C of the law and two rigid ends.
@@ -107,6 +116,42 @@ layers = 10
 name = "strands"
 friction = 0.15
 points = [8, 2]
+{steps}
+"#
+    )
+}
+
+/// The scene of a short strand stretched by 1 % against a rigid rod across it that just touches, its reference point ROD, with
+/// these steps then.
+#[must_use]
+pub fn rod_on_strand(friction: f64, steps: &str) -> String {
+    format!(
+        r#"
+title = "rod"
+[strand]
+radius = 2.785
+length = 16.0
+surface_angle = 30.0
+origin = "middle"
+[strand.mesh]
+core = 2
+rings = 2
+layers = 16
+{SET_C}
+[[rigid]]
+name = "ROD"
+shape = "cylinder"
+point = [7.785, 0.0, 0.0]
+axis = [0.0, 1.0, 0.0]
+radius = 5.0
+[[contact]]
+name = "rod"
+primary = "ROD"
+secondary = "LATERAL"
+friction = {friction:?}
+[[step]]
+name = "pull"
+tension = {{ elongation = 0.01 }}
 {steps}
 "#
     )

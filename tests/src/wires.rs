@@ -134,22 +134,6 @@ fn shape(radius: f64, rate: f64) -> [f64; 2] {
     [radius * rate * rate, rate].map(|v| v / (1.0 + (radius * rate).powi(2)))
 }
 
-/// Line load between three strands \[N/mm\], per length of the axis of a strand and line of contact: each is pressed inwards by
-/// `radial` per length and held by its two neighbours. `lay_angle` is that of the deformed axes. The touching point lies off
-/// the plane normal to the axis of the rope by the angle `t = -tan^2(beta) sin(120 deg + t)`.
-#[must_use]
-pub fn line_load(radial: f64, lay_angle: f64) -> f64 {
-    let (steep, third) = (lay_angle.tan().powi(2), 2.0 * PI / 3.0);
-    let mut t = 0.0;
-    for _ in 0..100 {
-        t -= (t + steep * f64::sin(third + t)) / (1.0 + steep * f64::cos(third + t));
-    }
-    // Distance of the axes over their helix radius, and what of the normal points to the axis of the rope.
-    let distance = (2.0 * (1.0 - f64::cos(third + t)) + t * t / steep).sqrt();
-    let inwards = (1.0 - f64::cos(third + t)) / distance;
-    radial / (2.0 * inwards)
-}
-
 /// The middle of a rope, between two sections: what it does, not what its ends are told to do.
 #[derive(Clone, Copy, Debug)]
 pub struct Middle {

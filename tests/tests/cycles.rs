@@ -4,20 +4,8 @@
 
 use std::path::Path;
 
-use subrope::progress::Silent;
-use subrope::run::{RunOptions, RunOutcome, run_scene};
 use subrope::scene::{Component, Motion, MotionPath, MotionTarget, Program, Scene};
-use subrope_tests::{SET_C, short_rope};
-
-fn run(text: &str) -> (tempfile::TempDir, RunOutcome) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    let out = folder.path().join("out");
-    let options = RunOptions { folder: Some(&out), threads: Some(1), ..RunOptions::default() };
-    let outcome = run_scene(&path, options, &mut Silent).unwrap();
-    (folder, outcome)
-}
+use subrope_tests::{rod_on_strand, run_with_files, short_rope};
 
 fn column(file: &Path, name: &str) -> Vec<f64> {
     let text = std::fs::read_to_string(file).unwrap();
@@ -41,7 +29,7 @@ count = 2
 low = 0.1
 high = 1.0
 "#;
-    let (folder, outcome) = run(&short_rope(steps));
+    let (folder, outcome) = run_with_files(&short_rope(steps));
     let rows = &outcome.summary.cycles;
     assert_eq!(rows.len(), 2);
     let history = folder.path().join("out/history.csv");
@@ -77,7 +65,7 @@ low = 0.002
 high = 0.01
 waveform = "sine"
 "#;
-    let (folder, outcome) = run(&short_rope(steps));
+    let (folder, outcome) = run_with_files(&short_rope(steps));
     let row = outcome.summary.cycles[0];
     assert!((row.low_elongation - 0.002).abs() < 1e-12 && (row.high_elongation - 0.01).abs() < 1e-12, "{row:?}");
     let history = folder.path().join("out/history.csv");
@@ -128,42 +116,16 @@ fn cycles_and_what_stands_beside_them() {
 /// The rod is pressed to a quarter of the radius and lifted again: it leaves a groove.
 #[test]
 fn a_rod_leaves_a_groove() {
-    let text = format!(
-        r#"
-title = "rod"
-[strand]
-radius = 2.785
-length = 16.0
-surface_angle = 30.0
-origin = "middle"
-[strand.mesh]
-core = 2
-rings = 2
-layers = 16
-{SET_C}
-[[rigid]]
-name = "ROD"
-shape = "cylinder"
-point = [7.785, 0.0, 0.0]
-axis = [0.0, 1.0, 0.0]
-radius = 5.0
-[[contact]]
-name = "rod"
-primary = "ROD"
-secondary = "LATERAL"
-friction = 0.15
-[[step]]
-name = "pull"
-tension = {{ elongation = 0.01 }}
+    let steps = r#"
 [[step]]
 name = "press"
-prescribe = [{{ point = "ROD", ux = -0.7 }}]
+prescribe = [{ point = "ROD", ux = -0.7 }]
 [[step]]
 name = "lift"
-prescribe = [{{ point = "ROD", ux = 0.0 }}]
-"#
-    );
-    let (folder, outcome) = run(&text);
+prescribe = [{ point = "ROD", ux = 0.0 }]
+"#;
+    let text = rod_on_strand(0.15, steps);
+    let (folder, outcome) = run_with_files(&text);
     let history = folder.path().join("out/history.csv");
     let (force, travel, step) = (column(&history, "ROD_fx"), column(&history, "ROD_ux"), column(&history, "step ["));
     let pressed = step.iter().rposition(|s| *s == 2.0).unwrap();

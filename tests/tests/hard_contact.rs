@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use subrope_contact::Contact;
-use subrope_tests::{Run, SET_C, contacts, run_scene, short_rope};
+use subrope_contact::{Contact, contacts};
+use subrope_tests::{Run, rod_on_strand, run_scene, short_rope};
 
 /// A short rope of set C with a gap over its radius, pulled and taken to compression and back.
 fn reversed(gap: f64, friction: f64) -> Run {
@@ -56,7 +56,7 @@ fn overlapping_and_distant_strands_converge_through_reversals() {
             // Increments are long: twice as many bring a quarter of this.
             assert!(totals.energy_error().abs() < 0.04, "energy error {}", totals.energy_error());
             // Between the ends, which are held where they overlap, no more than the penalty allows is left of it.
-            let deepest = contacts(&run).map(deepest_between_ends).fold(0.0, f64::max);
+            let deepest = contacts(&run.model.analysis).map(deepest_between_ends).fold(0.0, f64::max);
             assert!(deepest < 0.01 * 2.785, "penetration {deepest}");
             // Contact settles: increments converge well within the iterations allowed, and hardly any is repeated.
             assert!(most <= 15 && run.failures.len() <= 3, "{most} iterations, {:?}", run.failures);
@@ -68,47 +68,21 @@ fn overlapping_and_distant_strands_converge_through_reversals() {
 #[test]
 fn a_rod_is_pressed_deep_and_taken_back() {
     for friction in [0.0, 2.0] {
-        let text = format!(
-            r#"
-title = "rod"
-[strand]
-radius = 2.785
-length = 16.0
-surface_angle = 30.0
-origin = "middle"
-[strand.mesh]
-core = 2
-rings = 2
-layers = 16
-{SET_C}
-[[rigid]]
-name = "ROD"
-shape = "cylinder"
-point = [7.785, 0.0, 0.0]
-axis = [0.0, 1.0, 0.0]
-radius = 5.0
-[[contact]]
-name = "rod"
-primary = "ROD"
-secondary = "LATERAL"
-friction = {friction:?}
-[[step]]
-name = "pull"
-tension = {{ elongation = 0.01 }}
+        let steps = r#"
 [[step]]
 name = "press"
-increments = {{ maximum = 0.25 }}
-prescribe = [{{ point = "ROD", ux = -1.39 }}]
+increments = { maximum = 0.25 }
+prescribe = [{ point = "ROD", ux = -1.39 }]
 [[step]]
 name = "lift"
-increments = {{ maximum = 0.25 }}
-prescribe = [{{ point = "ROD", ux = -0.5 }}]
+increments = { maximum = 0.25 }
+prescribe = [{ point = "ROD", ux = -0.5 }]
 [[step]]
 name = "press again"
-increments = {{ maximum = 0.25 }}
-prescribe = [{{ point = "ROD", ux = -1.39 }}]
-"#
-        );
+increments = { maximum = 0.25 }
+prescribe = [{ point = "ROD", ux = -1.39 }]
+"#;
+        let text = rod_on_strand(friction, steps);
         let run = run_scene(&text, None);
         let rod = run.point("ROD");
         let force = -run.model.analysis.point_reaction(rod).0.x;

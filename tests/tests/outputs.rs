@@ -5,21 +5,10 @@
 use std::path::Path;
 
 use subrope::model::RopeModel;
-use subrope::progress::Silent;
-use subrope::run::{RunOptions, RunOutcome, run_scene};
+use subrope::run::RunOutcome;
 use subrope_geometry::{Face, Hex8, Hexahedron, Mesh, map_point, surface_area};
 use subrope_io::{Location, ResultReader};
-use subrope_tests::{SET_C, close, scene, short_rope};
-
-fn run(text: &str) -> (tempfile::TempDir, RunOutcome) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    let out = folder.path().join("out");
-    let options = RunOptions { folder: Some(&out), threads: Some(1), ..RunOptions::default() };
-    let outcome = run_scene(&path, options, &mut Silent).unwrap();
-    (folder, outcome)
-}
+use subrope_tests::{SET_C, close, run_with_files, scene, short_rope};
 
 /// A table by the names of its columns, units left out.
 struct Table(subrope_io::History);
@@ -55,7 +44,7 @@ fn pull(elongation: f64, increments: usize, every: usize) -> String {
 /// Energies of the strands are those of the rope, their forces and torques the reaction of its end.
 #[test]
 fn strands_add_up_to_the_rope() {
-    let (folder, outcome) = run(&pull(0.02, 10, 1));
+    let (folder, outcome) = run_with_files(&pull(0.02, 10, 1));
     let history = Table::read(&folder.path().join("out/history.csv"));
     let pairs = [
         ("stored_energy", "stored_energy"),
@@ -128,7 +117,7 @@ fn check_lines(folder: &Path, outcome: &RunOutcome) {
 
 #[test]
 fn slices_of_a_rope_add_up_to_its_contacts() {
-    let (folder, outcome) = run(&pull(0.01, 5, 2));
+    let (folder, outcome) = run_with_files(&pull(0.01, 5, 2));
     check_lines(folder.path(), &outcome);
     let table = Table::read(&folder.path().join("out/line_load.csv"));
     // Frames at increments 0, 2, 4 and 5, of three lines of ten slices each.
@@ -167,7 +156,7 @@ fn slices_of_a_strand_against_rigid_bodies() {
         "shape = \"plane\"\npoint = [2.785, 0.0, 0.0]\naxis = [-1.0, 0.0, 0.0]\n",
     ];
     for body in bodies {
-        let (folder, outcome) = run(&format!(
+        let (folder, outcome) = run_with_files(&format!(
             "{STRAND}{SET_C}[[rigid]]\nname = \"BODY\"\n{body}[[contact]]\nname = \"body\"\nprimary = \"BODY\"\n\
              secondary = \"LATERAL\"\nfriction = 0.15\n[[step]]\nname = \"pull\"\ntension = {{ elongation = 0.005 }}\n\
              [[step]]\nname = \"press\"\nprescribe = [{{ point = \"BODY\", ux = -0.4 }}]\n"
@@ -200,7 +189,7 @@ fn areas(mesh: &Mesh) -> Vec<f64> {
 fn fields_on_faces_balance() {
     let text = pull(0.01, 5, 5);
     let areas = areas(&RopeModel::from_scene(&scene(&text), None, Some(1)).unwrap().mesh.mesh);
-    let (_folder, outcome) = run(&text);
+    let (_folder, outcome) = run_with_files(&text);
     let file = ResultReader::open(outcome.files.results.as_ref().unwrap()).unwrap();
     let field = |name: &str, frame: usize| file.field(Location::Cell, name, frame).unwrap();
     let (gap, pressure, traction) =
@@ -242,7 +231,7 @@ every = 100
     );
     let model = RopeModel::from_scene(&scene(&text), None, Some(1)).unwrap();
     let (volumes, areas) = (volumes(&model.mesh.mesh), areas(&model.mesh.mesh));
-    let (_folder, outcome) = run(&text);
+    let (_folder, outcome) = run_with_files(&text);
     let file = ResultReader::open(outcome.files.results.as_ref().unwrap()).unwrap();
     let rows = &outcome.summary.cycles;
     // The start, the pull, then both ends of cycles 3 and 5.

@@ -8,8 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use subrope_fem::analysis::{Increments, NewtonOptions};
 use subrope_fem::kinematics::{Section, SectionKind};
 use subrope_geometry::{CellKind, Mesh};
-use subrope_material::{EngineeringConstants, StVenantKirchhoff};
-use subrope_tests::{Brick, Problem, brick, relative};
+use subrope_tests::{Brick, Problem, brick, peer_law, relative};
 
 const RADIUS: f64 = 2.785;
 const LENGTH: f64 = 60.0;
@@ -100,22 +99,6 @@ fn end(name: &str, z: f64, nodes: std::ops::Range<usize>) -> Section {
     }
 }
 
-fn law() -> StVenantKirchhoff {
-    let (e1, e2, nu, g) = (300.0, 60.0, 0.3, 50.0);
-    StVenantKirchhoff::orthotropic(&EngineeringConstants {
-        e1,
-        e2,
-        e3: e2,
-        nu12: nu,
-        nu13: nu,
-        nu23: nu,
-        g12: g,
-        g13: g,
-        g23: e2 / (2.0 * (1.0 + nu)),
-    })
-    .unwrap()
-}
-
 fn strand() -> Problem {
     let disc = disc();
     let mesh = sweep(&disc);
@@ -123,7 +106,7 @@ fn strand() -> Problem {
     let columns: Vec<Matrix3<f64>> = disc.quads.iter().map(|q| column_frame(&disc, q)).collect();
     let frames: Vec<Matrix3<f64>> =
         (0..LAYERS).flat_map(|_| columns.iter().flat_map(|f| std::iter::repeat_n(*f, 8))).collect();
-    let solid = brick(Brick::Plain, &mesh, &frames, law()).unwrap();
+    let solid = brick(Brick::Plain, &mesh, &frames, peer_law()).unwrap();
     let size = disc.points.len();
     let sections = vec![end("BOT", 0.0, 0..size), end("TOP", LENGTH, size * LAYERS..size * (LAYERS + 1))];
     let options = NewtonOptions { force_tolerance: 1e-9, ..NewtonOptions::default() };

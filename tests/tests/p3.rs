@@ -11,13 +11,11 @@ use nalgebra::{Matrix3, Vector3};
 use subrope_contact::{Contact, ContactOptions, Smoothing, Surface};
 use subrope_fem::Contribution;
 use subrope_fem::analysis::{Increments, NewtonOptions};
-use subrope_geometry::Handedness;
 use subrope_geometry::{
-    HelixRadius, Lay, LayBy, Rope, RopeLay, RopeMesh, RopeStrand, Section, SectionArea, Sense, StrandOrigin, YarnLay,
-    YarnLayBy, touching_radius,
+    Handedness, HelixRadius, Lay, LayBy, Rope, RopeLay, RopeMesh, RopeStrand, Section, SectionArea, Sense,
+    StrandOrigin, YarnLay, YarnLayBy, touching_radius,
 };
-use subrope_material::{EngineeringConstants, StVenantKirchhoff};
-use subrope_tests::{Brick, Problem, brick, close, rigid};
+use subrope_tests::{Brick, Problem, brick, close, peer_law, rigid};
 
 const RADIUS: f64 = 2.785;
 const LENGTH: f64 = 30.0;
@@ -53,22 +51,6 @@ fn frame(strand: u32, layer: usize) -> Matrix3<f64> {
     Matrix3::from_columns(&[e1, e2, e1.cross(&e2)])
 }
 
-fn law() -> StVenantKirchhoff {
-    let (e2, nu, g) = (60.0, 0.3, 50.0);
-    let constants = EngineeringConstants {
-        e1: 300.0,
-        e2,
-        e3: e2,
-        nu12: nu,
-        nu13: nu,
-        nu23: nu,
-        g12: g,
-        g13: g,
-        g23: e2 / (2.0 * (1.0 + nu)),
-    };
-    StVenantKirchhoff::orthotropic(&constants).unwrap()
-}
-
 #[test]
 fn three_strands_carry_what_calculix_says() {
     let RopeMesh { mesh, strand_of_cell, .. } = rope();
@@ -78,7 +60,7 @@ fn three_strands_carry_what_calculix_says() {
     let layer = |cell: usize| cell % (per_layer * LAYERS) / per_layer;
     let frames: Vec<Matrix3<f64>> =
         (0..mesh.cell_count()).flat_map(|c| [frame(strand_of_cell[c], layer(c)); 8]).collect();
-    let mut contributions: Vec<Box<dyn Contribution>> = vec![brick(Brick::Plain, &mesh, &frames, law()).unwrap()];
+    let mut contributions: Vec<Box<dyn Contribution>> = vec![brick(Brick::Plain, &mesh, &frames, peer_law()).unwrap()];
     for pair in [[1, 2], [2, 3], [3, 1]] {
         let [primary, secondary] =
             pair.map(|s| Surface::new(&mesh, &mesh.surfaces[&format!("LATERAL_{s}")], Smoothing::None).unwrap());

@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Vector3};
 
-use subrope_contact::Contact;
+use subrope_contact::{Contact, contacts};
 use subrope_fem::FemError;
 use subrope_fem::analysis::Increments;
-use subrope_tests::{Problem, close, contacts, run_scene, short_rope};
+use subrope_tests::{Problem, close, run_scene, short_rope};
 
 /// Stretched by 1 % with friction.
 fn pulled(increments: usize) -> String {
@@ -36,7 +36,7 @@ fn strands_share_alike_and_energy_balances() {
     assert!(error < 1e-2 && error < 0.5 * coarser, "{coarser:e} {error:e}");
     let totals = run.model.analysis.totals();
     assert!(totals.contact_friction > 0.0 && totals.contact_stored > 0.0);
-    let reports: Vec<_> = contacts(&run).map(Contact::report).collect();
+    let reports: Vec<_> = contacts(&run.model.analysis).map(Contact::report).collect();
     assert_eq!(reports.len(), 3);
     for report in &reports {
         assert!(report.touching > 0 && (report.normal / reports[0].normal - 1.0).abs() < 1e-6, "{reports:?}");
@@ -135,7 +135,7 @@ fn an_augmented_lagrangian_is_the_limit_of_penalties() {
     let with = |method: &str| {
         let text = short_rope(pull).replace("friction = 0.15", &format!("friction = 0.0\n{method}"));
         let run = run_scene(&text, None);
-        let deepest = contacts(&run).map(|c| c.report().penetration).fold(0.0, f64::max);
+        let deepest = contacts(&run.model.analysis).map(|c| c.report().penetration).fold(0.0, f64::max);
         let (force, moment) = run.model.analysis.point_reaction(run.point("END_B"));
         println!("{method}: F {} M {} penetration {deepest}", force.z, moment.z);
         [force.z, moment.z, deepest]

@@ -5,11 +5,12 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Vector3};
+use subrope::analytic::LaidStrands;
 use subrope::model::RopeModel;
-use subrope_contact::Contact;
+use subrope_contact::contacts;
 use subrope_fem::FemError;
 use subrope_fem::analysis::{Analysis, Control, IncrementRecord, Observer};
-use subrope_tests::{Middle, Run, Wires, close, contacts, line_load, run_scene, scene_file};
+use subrope_tests::{Middle, Run, Wires, close, run_scene, scene_file};
 
 // ------------------------------------------------------------------------------------------------------------ helpers
 
@@ -33,8 +34,7 @@ struct Touching(Vec<usize>, Vec<[f64; 2]>);
 
 impl Observer for Touching {
     fn converged(&mut self, analysis: &Analysis, _: &IncrementRecord) -> Result<Control, FemError> {
-        let contacts = analysis.model().contributions.iter().filter_map(|c| c.as_any()?.downcast_ref::<Contact>());
-        self.0.push(contacts.map(|c| c.report().touching).sum());
+        self.0.push(contacts(analysis).map(|c| c.report().touching).sum());
         let (force, moment) = analysis.point_reaction(1);
         self.1.push([force.z, moment.z]);
         Ok(Control::Continue)
@@ -123,8 +123,10 @@ fn check_line_load(run: &Run, wires: &Wires, middle: &Middle) {
     let shear = wires.shear(middle.elongation, middle.twist);
     let (sin, cos) = middle.lay_angle.sin_cos();
     let tension = (load(run)[0] / 3.0 - shear * sin) / cos;
-    let theory = |shear: f64| line_load((tension * sin - shear * cos) * sin / middle.helix_radius, middle.lay_angle);
-    for contact in contacts(run) {
+    // Touching strands of any radius have the same.
+    let radial_part = LaidStrands::touching(3, 1.0, middle.lay_angle).unwrap().radial_part();
+    let theory = |shear: f64| (tension * sin - shear * cos) * sin / middle.helix_radius / (2.0 * radial_part);
+    for contact in contacts(&run.model.analysis) {
         let load = middle.line_load(contact, 16);
         println!(
             "line load {load:.5} N/mm, {:.4} of theory, {:.4} without shear",
