@@ -11,7 +11,6 @@ use crate::linear::{AnalysisReport, LinearTerm, SolverOptions, SparsePattern, St
 /// Pattern, scatter maps, matrix values and solver: made once per set of prescribed coordinates.
 pub struct System {
     equations: Equations,
-    pattern: SparsePattern,
     maps: Vec<ScatterMap>,
     solver: TangentSolver,
     /// What the tangent has beside the matrix.
@@ -62,9 +61,10 @@ impl System {
         let symmetric = contributions.iter().all(|c| c.is_symmetric());
         let storage = if symmetric { Storage::Lower } else { Storage::Full };
         let pattern = pattern(kinematics, &equations, contributions, storage)?;
-        let solver = TangentSolver::analyse(&pattern, options)?;
         let maps =
             contributions.iter().map(|c| ScatterMap::new(kinematics, &equations, &pattern, c.as_ref())).collect();
+        let solver = TangentSolver::analyse(pattern, options)?;
+        let pattern = solver.pattern();
         Ok(Self {
             values: vec![0.0; pattern.nnz() + 1],
             nodal: vec![0.0; 3 * kinematics.node_count()],
@@ -75,7 +75,6 @@ impl System {
             products: Products::default(),
             has_products: contributions.iter().any(|c| c.has_products()),
             equations,
-            pattern,
             maps,
             solver,
         })
@@ -88,12 +87,12 @@ impl System {
 
     /// Whether the tangent is symmetric.
     pub fn is_symmetric(&self) -> bool {
-        !self.has_products && self.pattern.storage() == Storage::Lower
+        !self.has_products && self.solver.pattern().storage() == Storage::Lower
     }
 
     /// Stored entries of the matrix.
     pub fn entries(&self) -> usize {
-        self.pattern.nnz()
+        self.solver.pattern().nnz()
     }
 
     /// What the analysis chose.
@@ -125,12 +124,12 @@ impl System {
         }
         let mut out = Assembled::default();
         let (mut scale, mut stiffness_scale) = (0.0, 0.0);
-        let symmetric = self.pattern.storage() == Storage::Lower;
+        let symmetric = self.solver.pattern().storage() == Storage::Lower;
         for ((contribution, map), nodes) in contributions.iter_mut().zip(&mut self.maps).zip(&self.nodes) {
             let mut sink = Assembler {
                 kinematics,
                 equations: &self.equations,
-                pattern: &self.pattern,
+                pattern: self.solver.pattern(),
                 ties: &self.ties,
                 map,
                 nodes,
@@ -161,7 +160,7 @@ impl System {
         }
         kinematics.reduce(&self.ties, &self.net, residual);
         if at.request == Request::Tangent {
-            let (equations, pattern, values) = (&self.equations, &self.pattern, &mut self.values);
+            let (equations, pattern, values) = (&self.equations, self.solver.pattern(), &mut self.values);
             kinematics.curvature_blocks(at.q, &self.net, &mut |coordinates, block| {
                 add_block(equations, pattern, coordinates, block, values);
             });
@@ -174,7 +173,7 @@ impl System {
     /// # Errors
     /// [`FemError::Linear`].
     pub fn factorise(&mut self) -> Result<Option<usize>, FemError> {
-        let nnz = self.pattern.nnz();
+        let nnz = self.entries();
         let report = self.solver.factorise(&self.values[..nnz])?;
         Ok(report.negative_pivots.filter(|_| self.products.is_empty()))
     }
@@ -185,13 +184,13 @@ impl System {
     /// # Errors
     /// [`FemError::Linear`].
     pub fn solve(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<usize, FemError> {
-        let nnz = self.pattern.nnz();
+        let nnz = self.entries();
         Ok(self.solver.solve(&self.values[..nnz], &self.products, rhs, x)?)
     }
 
     /// Matrix values and pattern, for checks.
     pub fn matrix(&self) -> (&SparsePattern, &[f64]) {
-        (&self.pattern, &self.values[..self.pattern.nnz()])
+        (self.solver.pattern(), &self.values[..self.entries()])
     }
 }
 

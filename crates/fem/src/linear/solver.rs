@@ -175,14 +175,6 @@ impl LinearSolver {
         Ok(report)
     }
 
-    /// `A x` with the values last factorised.
-    ///
-    /// # Errors
-    /// [`LinearError::Length`].
-    pub fn multiply(&self, x: &[f64], product: &mut [f64]) -> Result<(), LinearError> {
-        self.pattern.multiply(&self.values, x, product)
-    }
-
     /// As [`LinearSolver::solve`], without refinement and its checks: a preconditioner.
     ///
     /// # Errors

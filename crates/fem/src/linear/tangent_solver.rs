@@ -35,18 +35,22 @@ pub struct TangentSolver {
 
 impl TangentSolver {
     /// Orders the unknowns and builds the structure of the factors. A full pattern is solved through its symmetric part,
-    /// unless the options name a method for unsymmetric values.
+    /// unless the options name a method for unsymmetric values. The pattern is kept.
     ///
     /// # Errors
     /// As [`LinearSolver::analyse`].
-    pub fn analyse(pattern: &SparsePattern, options: &SolverOptions) -> Result<Self, LinearError> {
+    pub fn analyse(pattern: SparsePattern, options: &SolverOptions) -> Result<Self, LinearError> {
         let split = pattern.storage() == Storage::Full && options.unsymmetric.is_none();
-        let part = split.then(|| SymmetricPart::new(pattern));
-        let solver = LinearSolver::analyse(part.as_ref().map_or(pattern, SymmetricPart::pattern), options)?;
+        let part = split.then(|| SymmetricPart::new(&pattern));
+        let solver = LinearSolver::analyse(part.as_ref().map_or(&pattern, SymmetricPart::pattern), options)?;
         let mut report = solver.analysis().clone();
         report.bytes += part.as_ref().map_or(0, SymmetricPart::bytes);
-        let (pattern, options) = (pattern.clone(), options.clone());
-        Ok(Self { pattern, options, solver, part, fallback: None, gmres: Gmres::default(), report })
+        Ok(Self { pattern, options: options.clone(), solver, part, fallback: None, gmres: Gmres::default(), report })
+    }
+
+    /// The pattern of the whole matrix.
+    pub fn pattern(&self) -> &SparsePattern {
+        &self.pattern
     }
 
     /// What the analysis found, of the symmetric part where that is factorised; its memory is without an `LU` that may be
@@ -103,14 +107,11 @@ impl TangentSolver {
         x: &mut [f64],
     ) -> Result<usize, LinearError> {
         let Self { pattern, options, fallback, gmres, .. } = self;
-        let mut solver = match fallback.take() {
+        let solver = match fallback {
             Some(solver) => solver,
-            None => Box::new(LinearSolver::analyse(pattern, options)?),
+            None => fallback.insert(Box::new(LinearSolver::analyse(pattern, options)?)),
         };
-        let solver = fallback.insert({
-            solver.factorise(values)?;
-            solver
-        });
+        solver.factorise(values)?;
         Ok(gmres.solve(&mut Preconditioned { pattern, values, term, solver }, rhs, x)?.iterations)
     }
 }

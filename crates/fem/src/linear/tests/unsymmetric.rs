@@ -179,7 +179,7 @@ impl LinearTerm for RankOne {
 }
 
 fn solve_tangent(pattern: &SparsePattern, values: &[f64], term: &RankOne, rhs: &[f64]) -> (Vec<f64>, usize) {
-    let mut solver = TangentSolver::analyse(pattern, &SolverOptions::default()).unwrap();
+    let mut solver = TangentSolver::analyse(pattern.clone(), &SolverOptions::default()).unwrap();
     assert_eq!(solver.factorise(values).unwrap().negative_pivots, None);
     let mut solution = vec![0.0; pattern.n()];
     let iterations = solver.solve(values, term, rhs, &mut solution).unwrap();
