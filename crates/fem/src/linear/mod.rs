@@ -2,7 +2,7 @@
 //!
 //! A [`SparsePattern`] is built once from the unknowns of the elements. [`LinearSolver::analyse`] compresses its graph to
 //! nodes, compares elimination orders by their exact cost (layer by layer along a slender body, from one end or from
-//! both; nested dissection) and prepares the factors; [`LinearSolver::factorise`] and [`LinearSolver::solve`] repeat
+//! both; nested dissection; cuts across the body one after the other) and prepares the factors; [`LinearSolver::factorise`] and [`LinearSolver::solve`] repeat
 //! without allocation. Symmetric values are factorised by a supernodal LDLᵀ whose pivots give the inertia, unsymmetric
 //! ones by LU. Every solution is refined and its residual checked. A [`TangentSolver`] spares the LU where it can: the
 //! LDLᵀ of the symmetric part preconditions GMRES.
@@ -12,6 +12,7 @@
 
 mod block_lu;
 mod block_plan;
+mod cross_sections;
 mod dissection;
 mod error;
 mod fill;

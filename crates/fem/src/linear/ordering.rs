@@ -1,5 +1,6 @@
 //! Choice of the elimination order by the exact cost of each candidate.
 
+use super::cross_sections::cross_sections;
 use super::dissection::nested_dissection;
 use super::error::LinearError;
 use super::fill::{Elimination, FillEstimate, postorder};
@@ -24,6 +25,9 @@ pub enum Ordering {
     TwistedLayers,
     /// Nested dissection by METIS.
     NestedDissection,
+    /// Cuts across a slender body by METIS: the parts between them by nested dissection, then the cuts one after the
+    /// other from both ends to the middle.
+    CrossSections,
 }
 
 impl Ordering {
@@ -34,6 +38,7 @@ impl Ordering {
             Self::Layers => "layers",
             Self::TwistedLayers => "layers from both ends",
             Self::NestedDissection => "nested dissection",
+            Self::CrossSections => "cross-sections from both ends",
         }
     }
 }
@@ -91,6 +96,9 @@ fn propose(graph: &Graph, forced: Option<Ordering>) -> Result<Vec<(Ordering, Vec
     let worth = if forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
     if wanted(Ordering::NestedDissection) && worth && !graph.neighbour.is_empty() {
         orders.push((Ordering::NestedDissection, nested_dissection(graph)?));
+    }
+    if wanted(Ordering::CrossSections) && worth && !graph.neighbour.is_empty() {
+        orders.extend(cross_sections(graph)?.into_iter().map(|order| (Ordering::CrossSections, order)));
     }
     if wanted(Ordering::Natural) && (forced.is_some() || graph.len() <= NATURAL_VERTICES) {
         orders.push((Ordering::Natural, natural(graph)));

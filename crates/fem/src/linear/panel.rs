@@ -1,11 +1,11 @@
-//! Dense work on the panels of supernodes: register kernels for those that fit the cache, general matrix products for
-//! larger ones.
+//! Dense work on the panels of supernodes: register kernels, and general matrix products for what is worth several
+//! threads.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Arch;
 
-use super::kernel::{BLOCK, Factorisation, Piece, Product};
+use super::kernel::{BLOCK, COLUMNS, Factorisation, PACKED, Product};
 use super::parallel::join;
 use super::supernodes::{Run, Supernode, Supernodes};
 
@@ -16,16 +16,24 @@ const SPLIT_FLOPS: usize = 20_000_000;
 /// Rows and columns per piece from which an update goes straight to its target.
 const DIRECT_ROWS: usize = 24;
 const DIRECT_COLUMNS: usize = 12;
-/// Entries of an updating panel up to which the register kernels are used.
-const CACHED_ENTRIES: usize = 40_000;
 /// Columns of a panel factorised before the rest of it is updated.
-const PANEL_COLUMNS: usize = 64;
+const PANEL_COLUMNS: usize = 32;
+
+/// Rows `source..source + len` of an updating panel that land on rows `target..` of another.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    source: usize,
+    target: usize,
+    len: usize,
+}
 
 /// Buffers of one branch, allocated once.
 pub(super) struct Workspace {
     scaled: Vec<f64>,
+    strips: Vec<f64>,
     product: Vec<f64>,
     pieces: Vec<Piece>,
+    rows: Vec<u32>,
     pivots: Vec<f64>,
     arch: Arch,
 }
@@ -36,6 +44,7 @@ pub(super) struct WorkspaceSize {
     scaled: usize,
     product: usize,
     columns: usize,
+    rows: usize,
     pieces: usize,
 }
 
@@ -43,15 +52,20 @@ impl WorkspaceSize {
     /// Makes room for the factorisation of `target`.
     pub(super) fn include_panel(&mut self, target: &Supernode) {
         self.columns = self.columns.max(target.columns());
-        self.scaled = self.scaled.max(target.columns() * PANEL_COLUMNS.max(BLOCK));
+        self.rows = self.rows.max(target.rows);
+        self.scaled = self.scaled.max(target.columns().next_multiple_of(COLUMNS) * PANEL_COLUMNS.max(BLOCK));
     }
 
     /// Makes room for an update of `target` by the rows of `source` from `first_row` on, in at most `runs` runs.
     pub(super) fn include_update(&mut self, target: &Supernode, source: &Supernode, first_row: usize, runs: usize) {
         let middle = target.columns().min(source.rows - first_row);
         self.columns = self.columns.max(source.columns());
-        self.scaled = self.scaled.max(middle.max(BLOCK) * source.columns());
-        self.product = self.product.max(middle * (source.rows - first_row));
+        let rows = source.rows - first_row;
+        self.rows = self.rows.max(rows);
+        self.scaled = self.scaled.max(middle.next_multiple_of(COLUMNS) * source.columns());
+        if is_heavy(rows, middle, source.columns()) {
+            self.product = self.product.max(middle * rows);
+        }
         self.pieces = self.pieces.max(runs + 2);
     }
 }
@@ -60,16 +74,19 @@ impl Workspace {
     pub(super) fn new(size: &WorkspaceSize) -> Self {
         Self {
             scaled: vec![0.0; size.scaled],
+            strips: vec![0.0; PACKED * size.columns],
             product: vec![0.0; size.product],
             pieces: Vec::with_capacity(size.pieces),
+            rows: Vec::with_capacity(size.rows),
             pivots: vec![0.0; size.columns],
             arch: Arch::new(),
         }
     }
 
     pub(super) fn bytes(&self) -> usize {
-        (self.scaled.len() + self.product.len() + self.pivots.len()) * size_of::<f64>()
+        (self.scaled.len() + self.strips.len() + self.product.len() + self.pivots.len()) * size_of::<f64>()
             + self.pieces.capacity() * size_of::<Piece>()
+            + self.rows.capacity() * size_of::<u32>()
     }
 }
 
@@ -95,40 +112,61 @@ pub(super) fn update(
     for (column, pivot) in pivots.iter_mut().enumerate() {
         *pivot = source_values[column * (source.rows + 1)];
     }
-    let pieces = &work.pieces[..];
-    let direct = rows >= DIRECT_ROWS * (pieces.len() - 1) && middle >= DIRECT_COLUMNS * (columns - 1);
-    let whole =
-        [Piece { source: 0, target: 0, len: middle }, Piece { source: middle, target: middle, len: rows - middle }];
-    let common =
-        Common { source, lower: &source_values[first_row..], pivots, scaled: &mut work.scaled, arch: work.arch };
-    if direct {
-        common.subtract(target_values, target.rows, pieces, columns);
-    } else {
-        let product = &mut work.product[..rows * middle];
-        product.fill(0.0);
-        common.subtract(product, rows, &whole, 1);
-        add_pieces(target_values, target.rows, product, rows, pieces, columns);
+    let lower = &source_values[first_row..];
+    if is_heavy(rows, middle, source.columns()) {
+        let update = Heavy { stride: source.rows, lower, pivots, scaled: &mut work.scaled };
+        update.apply(target_values, target.rows, (&work.pieces, columns), (rows, middle), &mut work.product);
+        return;
     }
+    work.rows.clear();
+    work.rows.extend(work.pieces.iter().flat_map(|p| p.target as u32..(p.target + p.len) as u32));
+    work.arch.dispatch(Product {
+        target: target_values,
+        target_stride: target.rows,
+        lower,
+        stride: source.rows,
+        pivots,
+        rows: &work.rows,
+        columns: middle,
+        strips: &mut work.strips,
+        scaled: &mut work.scaled,
+    });
 }
 
-/// The updating side of an update.
-struct Common<'a> {
-    source: &'a Supernode,
+/// The updating side of an update that is worth several threads.
+struct Heavy<'a> {
+    stride: usize,
     /// Its panel from the first of the rows that matter.
     lower: &'a [f64],
     pivots: &'a [f64],
     scaled: &'a mut [f64],
-    arch: Arch,
 }
 
-impl Common<'_> {
-    /// `target -= L D Lᵀ` over the rows of `pieces`.
-    fn subtract(self, target: &mut [f64], target_stride: usize, pieces: &[Piece], columns: usize) {
-        let (lower, stride, pivots, scaled) = (self.lower, self.source.rows, self.pivots, self.scaled);
-        if self.source.len() <= CACHED_ENTRIES {
-            self.arch.dispatch(Product { target, target_stride, lower, stride, pivots, pieces, columns, scaled });
+impl Heavy<'_> {
+    /// Updates the target in place where its pieces are long, otherwise through `product`.
+    fn apply(
+        self,
+        target: &mut [f64],
+        target_stride: usize,
+        (pieces, columns): (&[Piece], usize),
+        (rows, middle): (usize, usize),
+        product: &mut [f64],
+    ) {
+        if rows >= DIRECT_ROWS * (pieces.len() - 1) && middle >= DIRECT_COLUMNS * (columns - 1) {
+            self.subtract(target, target_stride, pieces, columns);
             return;
         }
+        let whole =
+            [Piece { source: 0, target: 0, len: middle }, Piece { source: middle, target: middle, len: rows - middle }];
+        let product = &mut product[..rows * middle];
+        product.fill(0.0);
+        self.subtract(product, rows, &whole, 1);
+        add_pieces(target, target_stride, product, rows, pieces, columns);
+    }
+
+    /// `target -= L D Lᵀ` over the rows of `pieces`.
+    fn subtract(self, target: &mut [f64], target_stride: usize, pieces: &[Piece], columns: usize) {
+        let Self { stride, lower, pivots, scaled } = self;
         let depth = pivots.len();
         let mut matrix = strided_mut(target, target_stride);
         for (place, column) in pieces[..columns].iter().enumerate() {
@@ -273,9 +311,25 @@ fn update_rest(values: &mut [f64], supernode: &Supernode, done: std::ops::Range<
         *pivot = finished[column * (stride + 1)];
     }
     let lower = &finished[done.start * stride + done.end..];
-    let left = columns - done.end;
-    scale_rows(lower, stride, pivots, left, &mut work.scaled);
-    let factor = MatRef::from_column_major_slice(&work.scaled[..left * done.len()], left, done.len()).transpose();
-    let target = strided_mut(rest, stride).subrows_mut(done.end, stride - done.end);
-    subtract_product(target, strided(lower, stride, stride - done.end, done.len()), factor);
+    let (rows, left) = (stride - done.end, columns - done.end);
+    if is_heavy(rows, left, done.len()) {
+        scale_rows(lower, stride, pivots, left, &mut work.scaled);
+        let factor = MatRef::from_column_major_slice(&work.scaled[..left * done.len()], left, done.len()).transpose();
+        let target = strided_mut(rest, stride).subrows_mut(done.end, rows);
+        subtract_product(target, strided(lower, stride, rows, done.len()), factor);
+        return;
+    }
+    work.rows.clear();
+    work.rows.extend(0..rows as u32);
+    work.arch.dispatch(Product {
+        target: &mut rest[done.end..],
+        target_stride: stride,
+        lower,
+        stride,
+        pivots,
+        rows: &work.rows,
+        columns: left,
+        strips: &mut work.strips,
+        scaled: &mut work.scaled,
+    });
 }
