@@ -5,11 +5,55 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use crate::foot::Local;
 use crate::patch::SECOND;
 
-/// Pressure `p = <lambda - eps g>` \[MPa\] and its slope `dp/dg`.
-#[must_use]
-pub fn pressure(multiplier: f64, penalty: f64, gap: f64) -> (f64, f64) {
-    let p = multiplier - penalty * gap;
-    if p > 0.0 { (p, -penalty) } else { (0.0, 0.0) }
+/// Pressure against depth: `eps d^2 / (2 t)` in a toe of depth `t`, `eps (d - t/2)` beyond; without a toe `eps d`.
+///
+/// Where long surfaces just touch, a toe lets pressure set in gradually, so that Newton's iteration need not find out point
+/// by point which of them touch. It leaves surfaces closer by `t/2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normal {
+    /// Penalty `eps` \[MPa/mm\].
+    pub penalty: f64,
+    /// Depth of the toe `t` \[mm\].
+    pub toe: f64,
+}
+
+impl Normal {
+    /// Pressure \[MPa\] and its slope by the gap `g`: that of depth `d_0 - g`, where `d_0` has the pressure of the
+    /// multiplier. Without a toe it is `<lambda - eps g>`.
+    #[must_use]
+    pub fn pressure(&self, multiplier: f64, gap: f64) -> (f64, f64) {
+        let depth = self.depth(multiplier) - gap;
+        if depth <= 0.0 {
+            (0.0, 0.0)
+        } else if depth < self.toe {
+            (self.penalty * depth * depth / (2.0 * self.toe), -self.penalty * depth / self.toe)
+        } else {
+            (self.penalty * (depth - 0.5 * self.toe), -self.penalty)
+        }
+    }
+
+    /// Depth \[mm\] at which the pressure is `pressure`.
+    fn depth(&self, pressure: f64) -> f64 {
+        if pressure < 0.5 * self.penalty * self.toe {
+            (2.0 * self.toe * pressure / self.penalty).sqrt()
+        } else {
+            pressure / self.penalty + 0.5 * self.toe
+        }
+    }
+
+    /// Work of the pressure from the surface to a depth \[mJ/mm^2\].
+    #[must_use]
+    pub fn energy(&self, depth: f64) -> f64 {
+        let (t, d) = (self.toe, depth.max(0.0));
+        self.penalty * if d < t { d * d * d / (6.0 * t) } else { 0.5 * d * (d - t) + t * t / 6.0 }
+    }
+
+    /// Potential of the gap \[mJ/mm^2\] whose negative slope is the pressure, zero where the surfaces meet.
+    #[must_use]
+    pub fn potential(&self, multiplier: f64, gap: f64) -> f64 {
+        let touching = self.depth(multiplier);
+        self.energy(touching - gap) - self.energy(touching)
+    }
 }
 
 /// Potential of friction \[mJ/mm^2\] whose trial traction is `trial` and whose limit does not follow the pressure: `T^2/(2
@@ -125,6 +169,28 @@ impl Trial {
             slip: s,
             by_place: Matrix2::from_columns(&[column(0), column(1)]),
             by_gap: dual * along(&slip.way) * share_slope,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pressure_is_the_slope_of_the_potential_and_the_multiplier_at_no_gap() {
+        let h = 1e-6;
+        for toe in [0.0, 0.01] {
+            let normal = Normal { penalty: 300.0, toe };
+            for multiplier in [0.0, 0.4, 7.0] {
+                assert!((normal.pressure(multiplier, 0.0).0 - multiplier).abs() < 1e-12);
+                for gap in [0.03, 0.004, -0.003, -0.02] {
+                    let (p, slope) = normal.pressure(multiplier, gap);
+                    let along = |f: &dyn Fn(f64) -> f64| (f(gap + h) - f(gap - h)) / (2.0 * h);
+                    assert!((along(&|g| normal.potential(multiplier, g)) + p).abs() < 1e-6, "{toe} {multiplier} {gap}");
+                    assert!((along(&|g| normal.pressure(multiplier, g).0) - slope).abs() < 1e-6 * normal.penalty);
+                }
+            }
         }
     }
 }

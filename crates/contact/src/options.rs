@@ -1,6 +1,7 @@
 //! Settings of a contact.
 
 use crate::ContactError;
+use crate::law::Normal;
 
 /// How the surfaces are kept apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +33,8 @@ pub enum FrictionTangent {
 pub struct ContactOptions {
     /// Normal penalty \[MPa/mm\].
     pub penalty: f64,
+    /// Depth over which the normal penalty sets in \[mm\]; zero: at once.
+    pub toe: f64,
     /// Tangential penalty \[MPa/mm\].
     pub tangential_penalty: f64,
     /// Coefficient of friction.
@@ -63,6 +66,7 @@ impl ContactOptions {
         let penalty = default_penalty(modulus, size);
         Self {
             penalty,
+            toe: 0.0,
             tangential_penalty: penalty,
             friction: 0.0,
             method: Method::Penalty,
@@ -71,6 +75,12 @@ impl ContactOptions {
             reach: 0.1 * size,
             ramp: 0.0,
         }
+    }
+
+    /// The law of the pressure.
+    #[must_use]
+    pub fn normal(&self) -> Normal {
+        Normal { penalty: self.penalty, toe: self.toe }
     }
 
     /// Checks ranges.
@@ -85,7 +95,7 @@ impl ContactOptions {
                 return Err(ContactError::Option { option, range: "positive and finite", value });
             }
         }
-        for (option, value) in [("friction", self.friction), ("ramp", self.ramp)] {
+        for (option, value) in [("toe", self.toe), ("friction", self.friction), ("ramp", self.ramp)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(ContactError::Option { option, range: "zero or positive, and finite", value });
             }

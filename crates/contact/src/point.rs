@@ -118,7 +118,8 @@ impl Point {
         predicting: bool,
     ) -> (Option<Touch>, PointEnergies) {
         let gap = foot.gap - self.overlap * ramp.new;
-        let mut pressure = law::pressure(self.multiplier, options.penalty, gap);
+        let normal = options.normal();
+        let mut pressure = normal.pressure(self.multiplier, gap);
         let (p, _) = pressure;
         self.hint = Some(foot.place);
         self.pulling = 0.0;
@@ -126,7 +127,7 @@ impl Point {
         (self.new.slip, self.new.work, self.new.work_mid) = (self.old.slip, self.old.work, self.old.work_mid);
         let mean = 0.5 * (self.old.pressure + p);
         let mut energies = PointEnergies {
-            potential: (p * p - self.multiplier * self.multiplier) / (2.0 * options.penalty),
+            potential: normal.potential(self.multiplier, gap),
             interference: mean * self.overlap * (ramp.new - ramp.old),
             ..PointEnergies::default()
         };
@@ -139,7 +140,7 @@ impl Point {
             }
             return (None, energies);
         }
-        energies.stored = 0.5 * options.penalty * gap.min(0.0).powi(2);
+        energies.stored = normal.energy(-gap);
         let friction = (options.friction > 0.0).then(|| self.slide(foot, committed, options, pressure));
         if let Some(f) = &friction {
             energies.stored += f.stored;

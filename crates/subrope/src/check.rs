@@ -8,6 +8,7 @@ use subrope_io::Ignored;
 
 use crate::Error;
 use crate::model::{ModelError, RopeModel};
+use crate::plan::Plan;
 use crate::scene::SceneFile;
 use crate::sizing::{RopeSizing, SizingSummary};
 
@@ -32,6 +33,8 @@ pub struct CheckReport {
     pub state_bytes_per_point: usize,
     /// Estimate of the largest memory of a run \[MB\].
     pub memory_mb: f64,
+    /// What a run uses and leaves out.
+    pub plan: Plan,
     /// What is given of a rope and what follows, where it is sized.
     pub sizing: Option<SizingSummary>,
     /// Keywords of the deck that were not read.
@@ -67,13 +70,13 @@ pub fn check_scene(file: &SceneFile) -> Result<CheckReport, Error> {
     let mut model = RopeModel::new(file, None)?;
     model.check_steps()?;
     let sizing = RopeSizing::of(&file.scene).map(|sizing| sizing.summary());
-    report(model, sizing).map_err(Error::Model)
+    let plan = Plan::new(&file.scene, &model);
+    report(model, plan, sizing).map_err(Error::Model)
 }
 
-fn report(model: RopeModel, sizing: Option<SizingSummary>) -> Result<CheckReport, ModelError> {
+fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result<CheckReport, ModelError> {
     let mesh = &model.mesh.mesh;
-    let fields = model.analysis.model().contributions.iter().find_map(|c| c.fields());
-    let state_bytes_per_point = fields.map_or(0, |f| f.state_bytes_per_point());
+    let state_bytes_per_point = model.state_bytes_per_point();
     let points = model.mesh.frames.len();
     let (system, solver_bytes) = system_size(&model);
     let per_element = points / mesh.cell_count().max(1);
@@ -98,6 +101,7 @@ fn report(model: RopeModel, sizing: Option<SizingSummary>) -> Result<CheckReport
         system,
         state_bytes_per_point,
         memory_mb: memory / 1e6,
+        plan,
         sizing,
         ignored: model.ignored,
     })
@@ -145,20 +149,15 @@ impl fmt::Display for CheckReport {
             )?;
         }
         let s = &self.system;
-        let (matrix, method) =
-            if s.symmetric { ("symmetric", "LDL^T") } else { ("unsymmetric", "LDL^T of the symmetric part and GMRES") };
+        let matrix = if s.symmetric { "symmetric" } else { "unsymmetric" };
         writeln!(
             f,
-            "  system   {} unknowns, {matrix}: {method}, ordering {}, {:.2} GFLOP per factorisation",
+            "  system   {} unknowns, {matrix}, {:.2} GFLOP per factorisation",
             s.unknowns,
-            s.ordering,
             s.factor_flops / 1e9
         )?;
-        match self.state_bytes_per_point {
-            0 => writeln!(f, "  state    none: the law is elastic")?,
-            bytes => writeln!(f, "  state    {bytes} bytes per integration point")?,
-        }
         writeln!(f, "  memory   about {:.0} MB", self.memory_mb)?;
+        write!(f, "  plan\n{}", self.plan)?;
         if let Some(sizing) = &self.sizing {
             for (i, line) in sizing.to_string().lines().enumerate() {
                 writeln!(f, "  {:<8} {line}", if i == 0 { "sizing" } else { "" })?;

@@ -6,6 +6,7 @@
 //! - [`law`]: laws built from what a scene says;
 //! - [`model`]: a scene made ready to solve;
 //! - [`check`]: what a scene amounts to, before solving;
+//! - [`plan`]: what a run will use and what it leaves out;
 //! - [`run`]: solving it, with results on disk;
 //! - [`analytic`]: closed forms to compare a run with;
 //! - [`point`]: paths of one material point;
@@ -62,6 +63,7 @@ mod error;
 pub mod law;
 pub mod mesh_file;
 pub mod model;
+pub mod plan;
 pub mod point;
 pub mod progress;
 pub mod run;

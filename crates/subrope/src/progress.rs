@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::plan::Plan;
+
 /// A step begins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepStart {
@@ -64,6 +66,9 @@ pub struct Finish {
 
 /// Watches a run. Every method does nothing unless it is overridden.
 pub trait Observer: Send {
+    /// A run is about to begin.
+    fn on_plan(&mut self, _plan: &Plan) {}
+
     /// A step begins.
     fn on_step(&mut self, _step: &StepStart) {}
 

@@ -5,6 +5,7 @@ use std::io::{IsTerminal as _, Write as _};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::plan::Plan;
 use crate::progress::{Finish, IncrementRecord, Observer, Outcome, StepStart};
 
 /// Parts of the bar per step.
@@ -34,6 +35,10 @@ impl Terminal {
 }
 
 impl Observer for Terminal {
+    fn on_plan(&mut self, plan: &Plan) {
+        self.line(&format!("plan\n{}", plan.to_string().trim_end()));
+    }
+
     fn on_step(&mut self, step: &StepStart) {
         self.bar.set_length(PARTS * step.count as u64);
         self.bar.set_message(step.name.clone());

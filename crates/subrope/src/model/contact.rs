@@ -109,6 +109,7 @@ fn options(scene: &Scene, entry: &scene::Contact, modulus: f64, size: f64) -> Co
     let penalty = entry.penalty.unwrap_or(base.penalty);
     ContactOptions {
         penalty,
+        toe: entry.toe * size,
         tangential_penalty: entry.tangential_ratio * penalty,
         friction: entry.friction,
         method: match entry.method {

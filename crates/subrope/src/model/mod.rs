@@ -117,6 +117,13 @@ impl RopeModel {
         }
     }
 
+    /// Bytes of state per integration point, committed and trial; 0 for an elastic law.
+    #[must_use]
+    pub fn state_bytes_per_point(&self) -> usize {
+        let fields = self.analysis.model().contributions.iter().find_map(|c| c.fields());
+        fields.map_or(0, |f| f.state_bytes_per_point())
+    }
+
     /// Runs all steps without writing anything; the state is then in `analysis`.
     ///
     /// # Errors

@@ -27,6 +27,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::Error;
 use crate::model::RopeModel;
+use crate::plan::Plan;
 use crate::progress::Observer;
 use crate::scene::SceneFile;
 use session::Session;
@@ -82,6 +83,7 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
     // Everything that can be refused is refused before files of an earlier run are replaced.
     model.check_steps()?;
+    observer.on_plan(&Plan::new(&file.scene, &model));
     let session = Session::open(&file, &model, &folder)?;
     session.run(&mut model, options.interrupt, observer)
 }

@@ -13,6 +13,7 @@ use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, con
 use super::session::integration_points;
 use super::strands::{self, StrandSummary};
 use crate::model::RopeModel;
+use crate::plan::Plan;
 use crate::scene::SceneFile;
 use crate::sizing::{RopeSizing, SizingSummary};
 
@@ -71,6 +72,8 @@ pub struct Summary {
     /// What is given of a rope and what follows, where it is sized.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sizing: Option<SizingSummary>,
+    /// What the run used and left out.
+    pub plan: Plan,
     /// Sizes.
     pub size: SizeSummary,
     /// Counts of increments and iterations.
@@ -208,6 +211,7 @@ impl Summary {
             cycles: cycles.to_vec(),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
             sizing: RopeSizing::of(&file.scene).map(|sizing| sizing.summary()),
+            plan: Plan::new(&file.scene, model),
             size: sizes(model),
             counts: counts(model),
             seconds: times(model, seconds),

@@ -1,0 +1,178 @@
+//! What a run will compute, and what it leaves out because the scene does not need it.
+
+use std::fmt;
+
+use serde::Serialize;
+use subrope_contact::{FrictionTangent, Method, contacts};
+
+use crate::model::RopeModel;
+use crate::scene::{BundleLaw, Field, Formulation, Law, Scene};
+
+/// What is in use, part by part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Plan {
+    /// Its parts.
+    pub parts: Vec<PlanPart>,
+}
+
+/// A part of a computation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlanPart {
+    /// Which.
+    pub part: &'static str,
+    /// What is in use.
+    pub uses: String,
+    /// What is left out, and costs neither time nor memory.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub leaves_out: Vec<LeftOut>,
+}
+
+/// Something that a scene does not need.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// What.
+    pub what: &'static str,
+    /// Why.
+    pub why: String,
+}
+
+impl PlanPart {
+    fn new(part: &'static str, uses: impl Into<String>) -> Self {
+        Self { part, uses: uses.into(), leaves_out: Vec::new() }
+    }
+
+    fn without(mut self, what: &'static str, why: impl Into<String>) -> Self {
+        self.leaves_out.push(LeftOut { what, why: why.into() });
+        self
+    }
+
+    fn without_if(self, is_out: bool, what: &'static str, why: &str) -> Self {
+        if is_out { self.without(what, why) } else { self }
+    }
+}
+
+impl Plan {
+    /// The plan of a scene and the model made of it, whose first step has been analysed.
+    #[must_use]
+    pub fn new(scene: &Scene, model: &RopeModel) -> Self {
+        let parts = vec![
+            state(scene, model),
+            element(scene, model),
+            contact(model),
+            solver(model),
+            increments(scene),
+            threads(model),
+            output(scene),
+        ];
+        Self { parts }
+    }
+}
+
+fn state(scene: &Scene, model: &RopeModel) -> PlanPart {
+    let bytes = model.state_bytes_per_point();
+    let word = scene.law.word();
+    if bytes == 0 {
+        let part = PlanPart::new("law", format!("{word}, elastic"));
+        return part.without("state of the points", "nothing slides inside the material: 0 bytes per point");
+    }
+    let part = PlanPart::new("law", format!("{word} with sliding, {bytes} bytes of state per point"));
+    let Law::Bundle(law) = &scene.law else { return part };
+    let BundleLaw { X_t, X_l, mu_t, mu_l, .. } = law;
+    part.without_if(*X_t == 0.0 && *X_l == 0.0, "back stress", "X_t = X_l = 0").without_if(
+        *mu_t == 0.0 && *mu_l == 0.0,
+        "pressure in the state",
+        "mu_t = mu_l = 0",
+    )
+}
+
+fn element(scene: &Scene, model: &RopeModel) -> PlanPart {
+    let formulation = scene.element.formulation;
+    let per_brick = model.mesh.frames.len() / model.mesh.mesh.cell_count().max(1);
+    PlanPart::new("element", format!("{}, {per_brick} points a brick", formulation.word())).without_if(
+        matches!(formulation, Formulation::Hex8 | Formulation::Hex27),
+        "averages over an element",
+        "this formulation has none",
+    )
+}
+
+fn contact(model: &RopeModel) -> PlanPart {
+    let pairs: Vec<_> = contacts(&model.analysis).collect();
+    let Some(first) = pairs.first() else {
+        let why = "no [[contact]]";
+        return PlanPart::new("contact", "none").without("surfaces, search for candidates, projection", why);
+    };
+    let options = first.options();
+    let method = match options.method {
+        Method::Penalty => "penalty",
+        Method::Augmented { .. } => "augmented Lagrangian",
+    };
+    let rubs = pairs.iter().any(|c| c.options().friction > 0.0);
+    let number = pairs.len();
+    let uses = format!("{number} {}, {method}", if number == 1 { "pair" } else { "pairs" });
+    let uses = if rubs { uses + " with friction" } else { uses };
+    PlanPart::new("contact", uses)
+        .without_if(!rubs, "slip and traction, unsymmetric tangent", "friction = 0")
+        .without_if(
+            rubs && options.tangent == FrictionTangent::Symmetric,
+            "what couples friction to pressure in the tangent",
+            "tangent = \"symmetric\"",
+        )
+        .without_if(options.method == Method::Penalty, "multipliers", "method = \"penalty\"")
+}
+
+fn solver(model: &RopeModel) -> PlanPart {
+    let Some(system) = model.analysis.system() else { return PlanPart::new("solver", "none: no step") };
+    let analysis = system.analysis();
+    let ordering = analysis.ordering.name();
+    let gigaflops = analysis.fill.flops / 1e9;
+    if system.is_symmetric() {
+        let uses = format!("LDL^T, {ordering}, {gigaflops:.2} GFLOP");
+        return PlanPart::new("solver", uses)
+            .without("half of the matrix, LU, GMRES", "the tangent is symmetric for this law and these contacts");
+    }
+    let uses = format!("LDL^T of the symmetric part and GMRES, {ordering}, {gigaflops:.2} GFLOP");
+    PlanPart::new("solver", uses).without("LU", "made only where GMRES stalls")
+}
+
+fn increments(scene: &Scene) -> PlanPart {
+    let steps = scene.step.len();
+    let uses = format!("{steps} {}, automatic increments", if steps == 1 { "step" } else { "steps" });
+    PlanPart::new("steps", uses)
+        .without_if(scene.solver.stabilisation.is_none(), "artificial damping", "no [solver.stabilisation]")
+        .without_if(!scene.solver.extrapolate, "extrapolated first iterate", "extrapolate = false")
+        .without_if(scene.step.iter().all(|s| s.cycles.is_none()), "table of cycles", "no step has cycles")
+}
+
+fn threads(model: &RopeModel) -> PlanPart {
+    match model.analysis.threads() {
+        1 => PlanPart::new("threads", "one").without("scheduling", "one thread"),
+        n => PlanPart::new("threads", format!("{n}; the results are those of one")),
+    }
+}
+
+fn output(scene: &Scene) -> PlanPart {
+    let tables = "history.csv, summary.json";
+    if !cfg!(feature = "hdf5") {
+        return PlanPart::new("output", tables).without("result file", "built without the feature `hdf5`");
+    }
+    let output = &scene.output;
+    let every = if output.every == 1 { "every increment".into() } else { format!("every {} increments", output.every) };
+    let count = output.fields.len();
+    let uses = format!("{count} fields {every}, {tables}");
+    PlanPart::new("output", uses)
+        .without_if(count < Field::ALL.len(), "other fields", "not among [output] fields")
+        .without("values at integration points", "fields are means of elements")
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for part in &self.parts {
+            writeln!(f, "    {:<8} {}", part.part, part.uses)?;
+            for LeftOut { what, why } in &part.leaves_out {
+                writeln!(f, "             left out: {what} ({why})")?;
+            }
+        }
+        Ok(())
+    }
+}

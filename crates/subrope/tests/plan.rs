@@ -1,0 +1,65 @@
+//! The plan: what a scene uses, and that what it leaves out is not there.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::Path;
+
+use subrope::model::RopeModel;
+use subrope::plan::{Plan, PlanPart};
+use subrope::scene::SceneFile;
+
+fn plan(scene: &str, change: impl Fn(&mut SceneFile)) -> (Plan, RopeModel) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene);
+    let mut file = SceneFile::load(&path).unwrap();
+    change(&mut file);
+    let mut model = RopeModel::new(&file, Some(1)).unwrap();
+    model.check_steps().unwrap();
+    (Plan::new(&file.scene, &model), model)
+}
+
+fn part<'a>(plan: &'a Plan, name: &str) -> &'a PlanPart {
+    plan.parts.iter().find(|p| p.part == name).unwrap()
+}
+
+fn leaves_out(plan: &Plan, name: &str, what: &str) -> bool {
+    part(plan, name).leaves_out.iter().any(|l| l.what.contains(what) && !l.why.is_empty())
+}
+
+#[test]
+fn an_elastic_strand_has_no_state_no_contact_and_half_a_matrix() {
+    let (plan, model) = plan("bent_strand_elastic.toml", |_| {});
+    assert!(leaves_out(&plan, "law", "state"), "{plan}");
+    assert!(leaves_out(&plan, "contact", "search"), "{plan}");
+    assert!(leaves_out(&plan, "solver", "GMRES"), "{plan}");
+    assert_eq!(model.state_bytes_per_point(), 0);
+    assert!(model.analysis.system().unwrap().is_symmetric());
+    assert_eq!(model.analysis.model().contributions.len(), 1);
+}
+
+#[test]
+fn state_and_system_follow_what_the_law_needs() {
+    let (sliding, model) = plan("bent_strand_coarse.toml", |_| {});
+    assert!(leaves_out(&sliding, "law", "back stress") && leaves_out(&sliding, "law", "pressure"), "{sliding}");
+    let (rubbing, other) = plan("bent_strand_coarse.toml", |file| {
+        if let subrope::scene::Law::Bundle(law) = &mut file.scene.law {
+            law.mu_t = 0.2;
+        }
+    });
+    assert!(!leaves_out(&rubbing, "law", "pressure"), "{rubbing}");
+    assert!(part(&rubbing, "solver").uses.contains("GMRES"), "{rubbing}");
+    // One number more, committed and trial.
+    assert_eq!(other.state_bytes_per_point(), model.state_bytes_per_point() + 16);
+}
+
+#[test]
+fn a_rope_without_friction_keeps_no_slip() {
+    let (rubs, _) = plan("sub_rope_cycles.toml", |_| {});
+    assert!(part(&rubs, "contact").uses.contains("3 pairs, penalty with friction"), "{rubs}");
+    let (smooth, model) = plan("sub_rope_cycles.toml", |file| {
+        file.scene.contact[0].friction = 0.0;
+        if let subrope::scene::Law::Bundle(law) = &mut file.scene.law {
+            (law.mu_t, law.mu_l) = (0.0, 0.0);
+        }
+    });
+    assert!(leaves_out(&smooth, "contact", "slip"), "{smooth}");
+    assert!(model.analysis.system().unwrap().is_symmetric());
+}
