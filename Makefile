@@ -5,7 +5,7 @@
 RESULT ?= out/bent_strand/results.vtkhdf
 PICTURE ?= $(RESULT:.vtkhdf=.png)
 
-.PHONY: bend test check bench picture clean setup
+.PHONY: bend test check bench bench-draw picture clean setup
 
 bend:
 	@sh scripts/bend.sh
@@ -17,8 +17,13 @@ test:
 check:
 	@sh scripts/check.sh
 
+# Measures, keeps the figures in benches/history.jsonl and compares them with those before; make bench-draw draws them.
 bench: setup
 	cargo bench --workspace
+	python3 scripts/bench_record.py
+
+bench-draw:
+	python3 scripts/bench_record.py draw
 
 # Renders the last step of RESULT; runs the main job first when there is no result yet.
 picture:
