@@ -68,6 +68,17 @@ pub struct Analysis {
     pub(super) lever: f64,
 }
 
+/// The iterate at which an attempt ended.
+#[derive(Clone, Copy, Debug)]
+pub struct LastTrial<'a> {
+    /// Nodal displacements \[mm\].
+    pub displacement: &'a [f64],
+    /// Residual of all coordinates, reactions of the prescribed ones included \[N, N mm\].
+    pub residual: &'a [f64],
+    /// Length of the increment that was tried \[s\].
+    pub time_increment: f64,
+}
+
 impl Analysis {
     /// A model at rest.
     #[must_use]
@@ -170,6 +181,14 @@ impl Analysis {
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time
+    }
+
+    /// Where the last attempt stood when it ended; of a committed one, the committed state.
+    #[must_use]
+    pub fn last_trial(&self) -> LastTrial<'_> {
+        let base = &self.work.base;
+        let time_increment = self.work.target.time_increment;
+        LastTrial { displacement: &base.displacement, residual: &base.residual, time_increment }
     }
 
     /// The sparse system of the current step.

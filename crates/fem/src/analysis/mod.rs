@@ -9,7 +9,7 @@ mod step;
 mod viscous;
 mod workspace;
 
-pub use driver::{Analysis, Model};
+pub use driver::{Analysis, LastTrial, Model};
 pub use record::{Control, IncrementRecord, Observer, Phase, Phases, Silent, Totals};
 pub use rigid::rigid_motions;
 pub use step::{Increments, Load, LoadBefore, LoadPath, NewtonOptions, Path, Prescription, Step, StepLoad};

@@ -7,6 +7,8 @@ mod error;
 #[cfg(feature = "hdf5")]
 mod fields;
 mod findings;
+#[cfg(feature = "hdf5")]
+mod last_trial;
 mod line_load;
 mod sections;
 mod session;

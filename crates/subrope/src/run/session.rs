@@ -21,6 +21,8 @@ use crate::scene::SceneFile;
 #[cfg(feature = "hdf5")]
 use super::fields::{self, CycleStart, FieldArray, Place};
 #[cfg(feature = "hdf5")]
+use super::last_trial;
+#[cfg(feature = "hdf5")]
 use subrope_io::{FieldSpec, Precision, Provenance, ResultWriter, WriterOptions};
 
 /// Name of the file with the fields.
@@ -70,13 +72,10 @@ impl<'a> Session<'a> {
             tables: Vec::new(),
             summary: folder.join("summary.json"),
         };
-        // A summary of an earlier run must not stand beside new results.
-        match std::fs::remove_file(&files.summary) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(RunError::Replace { path: files.summary, source }.into());
-            }
-            _ => {}
-        }
+        // What an earlier run wrote at its end must not stand beside new results.
+        remove(&files.summary)?;
+        #[cfg(feature = "hdf5")]
+        remove(&folder.join(last_trial::FILE))?;
         let output = Output::open(file, model, &files).map_err(RunError::Output)?;
         let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
         files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
@@ -140,6 +139,11 @@ impl<'a> Session<'a> {
         write_json(&files.summary, &summary).map_err(RunError::Output)?;
         match outcome {
             Err(cause) if !interrupted => {
+                // The run has failed already: that this file cannot be written is no more than a pity.
+                #[cfg(feature = "hdf5")]
+                if let Err(error) = last_trial::write(&files.folder, &model.mesh, &model.analysis) {
+                    observer.on_warning(&format!("no {}: {error}", last_trial::FILE));
+                }
                 let kept = (model.analysis.totals().increments > 0).then(|| files.folder.clone());
                 Err(RunError::Solver { cause: Box::new(cause), kept }.into())
             }
@@ -152,6 +156,16 @@ impl<'a> Session<'a> {
                 Ok(RunOutcome { files, summary })
             }
         }
+    }
+}
+
+/// Removes a file, if there is one.
+fn remove(path: &Path) -> Result<(), RunError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(RunError::Replace { path: path.to_path_buf(), source })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""How the cost of an iteration grows with the size of a sub-rope, as Markdown tables with exponents.
+
+    python3 scripts/growth.py [--binary target/release/subrope] [--out out/growth] [--repeats 3] [FAMILY ...]
+
+Families: length (pitches), section (refinement of the section), strands (their number). Every member is a short pull of the
+rope of scenes/sub_rope_cycles.toml in two increments or so, on one thread. Members run interleaved, and the least time of the
+repeats counts: what is above it is the machine's. An exponent is that of the cost between neighbours in the table,
+d log cost / d log unknowns.
+"""
+import argparse
+import json
+import math
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SCENE = ROOT / "scenes" / "sub_rope_cycles.toml"
+PULL = """[[step]]
+name = "pull"
+increments = { initial = 0.5 }
+[step.tension]
+elongation = 1e-5
+"""
+PITCH, LAYERS = 60.0, 40
+
+# What a member changes: keys of the scene.
+FAMILIES = {
+    "length": [(f"{n} pitches", {"length": n * PITCH, "layers": n * LAYERS}) for n in (1, 2, 4, 8, 16)],
+    "section": [
+        (f"{4 * core} faces around", {"core": core, "rings": core, "layers": 20 * core, "points": f"[{16 // core}, 2]"})
+        for core in (1, 2, 3, 4)
+    ],
+    "strands": [(f"{n} strands", {"strands": n}) for n in (2, 3, 4, 5, 6)],
+}
+PHASES = ("assembly", "factorisation", "solution")
+
+
+def scene(changes):
+    """The scene with one short pull and other values of some keys."""
+    text = SCENE.read_text().split("[[step]]")[0]
+    for key, value in changes.items():
+        text, count = re.subn(rf"^{key} = [^#\n]*", f"{key} = {value} ", text, flags=re.M)
+        if count == 0:
+            text = text.replace("[rope]\n", f"[rope]\n{key} = {value}\n")
+    return text + PULL
+
+
+def run(args, family, name, changes):
+    """One run of a member; its summary, or why it failed."""
+    folder = args.out / family / name.replace(" ", "_")
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(scene(changes))
+    command = [args.binary, "run", folder / "scene.toml", "--out", folder / "results", "--threads", "1"]
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode:
+        return None, done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"exit code {done.returncode}"
+    return json.loads((folder / "results" / "summary.json").read_text()), None
+
+
+def costs(summary):
+    """Cost of an iteration by phase [ms], and memory [MB]."""
+    count = summary["counts"]["factorisations"]
+    out = {phase: 1e3 * summary["seconds"][phase] / count for phase in PHASES}
+    out["iteration"] = sum(out.values())
+    out["memory"] = summary["peak_memory_mb"] or 0.0
+    return out
+
+
+def family_table(args, family):
+    members = FAMILIES[family]
+    best, sizes, failed = {}, {}, {}
+    for _ in range(args.repeats):
+        for name, changes in members:
+            if name in failed:
+                continue
+            summary, why = run(args, family, name, changes)
+            if summary is None:
+                failed[name] = why
+                continue
+            sizes[name] = summary["size"]
+            new = costs(summary)
+            best[name] = {k: min(v, best.get(name, new)[k]) for k, v in new.items()}
+    print(f"\n| {family} | unknowns | GFLOP | factorisation GFLOP/s | assembly ms | factorisation ms | solution ms "
+          "| iteration ms | exponent | memory MB | exponent |")
+    print("|" + "---|" * 11)
+    before = None
+    for name, _ in members:
+        if name in failed:
+            print(f"| {name} | {failed[name]} |" + " |" * 9)
+            continue
+        cost, size = best[name], sizes[name]
+        flops = size["factor_flops"] / 1e9
+        exponents = ("", "")
+        if before:
+            ratio = math.log(size["unknowns"] / before[1]["unknowns"])
+            exponents = tuple(f"{math.log(cost[k] / before[0][k]) / ratio:.2f}" for k in ("iteration", "memory"))
+        before = (cost, size)
+        cells = [name, size["unknowns"], f"{flops:.2f}", f"{flops / cost['factorisation'] * 1e3:.1f}",
+                 *(f"{cost[p]:.0f}" for p in PHASES), f"{cost['iteration']:.0f}", exponents[0],
+                 f"{cost['memory']:.0f}", exponents[1]]
+        print("| " + " | ".join(map(str, cells)) + " |", flush=True)
+    first, last = (next((n for n, _ in order if n in best), None) for order in (members, members[::-1]))
+    if first != last:
+        ratio = math.log(sizes[last]["unknowns"] / sizes[first]["unknowns"])
+        overall = {k: math.log(best[last][k] / best[first][k]) / ratio for k in ("iteration", "memory")}
+        print(f"\nFrom {first} to {last}: exponent {overall['iteration']:.2f} of the time of an iteration, "
+              f"{overall['memory']:.2f} of the memory; least of {args.repeats} runs.")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("families", nargs="*", choices=[*FAMILIES, []], default=list(FAMILIES))
+    parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/subrope")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/growth")
+    parser.add_argument("--repeats", type=int, default=3)
+    args = parser.parse_args()
+    for family in args.families:
+        family_table(args, family)
+
+
+if __name__ == "__main__":
+    main()
