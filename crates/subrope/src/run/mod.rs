@@ -1,5 +1,6 @@
 //! Running a scene: results on disk while it goes on, a summary at the end.
 
+mod clock;
 mod columns;
 mod contacts;
 mod cycles;
@@ -16,7 +17,7 @@ mod summary;
 pub use cycles::CycleRow;
 pub use error::RunError;
 pub(crate) use error::output_advice;
-pub use findings::{Findings, Mode, ModeFinding, Zone};
+pub use findings::{Findings, Mode, ModeFinding, PeakDensities, Zone};
 pub use line_load::{AnalyticLineLoad, ContactLine, LineLoadSummary, LineSlice, contact_lines};
 pub use sections::{SectionShape, section_shapes};
 pub use strands::{StrandSummary, strands};
@@ -29,6 +30,7 @@ use crate::Error;
 use crate::model::RopeModel;
 use crate::progress::Observer;
 use crate::scene::SceneFile;
+use clock::Clock;
 use session::Session;
 
 /// What a run may be told.
@@ -80,8 +82,9 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
         observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
     }
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
+    let clock = Clock::start();
     // Everything that can be refused is refused before files of an earlier run are replaced.
     model.check_steps()?;
-    let session = Session::open(&file, &model, &folder)?;
+    let session = Session::open(&file, &model, &folder, clock)?;
     session.run(&mut model, options.interrupt, observer)
 }
