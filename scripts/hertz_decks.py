@@ -34,9 +34,9 @@ def deck(across):
     for k in range(2):
         for j in range(up + 1):
             for i in range(across + 1):
-                x = WIDTH * graded(i / across, 4.5)
+                x = WIDTH * graded(i / across, 5.5)
                 low = RADIUS - math.sqrt(RADIUS**2 - x**2)
-                y = low + (RADIUS - low) * graded(j / up, 5.0)
+                y = low + (RADIUS - low) * graded(j / up, 6.0)
                 out.append(f"{number(i, j, k)}, {x:.9g}, {y:.9g}, {THICKNESS * k:.9g}")
     out.append("*ELEMENT, TYPE=C3D8, ELSET=CYLINDER")
     element = lambda i, j: 1 + i + across * j

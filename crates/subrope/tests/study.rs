@@ -102,7 +102,7 @@ fn a_study_compares_what_ends_well_and_tells_what_fails() {
     let out = subrope(&["study", "study.toml", "--target", "2%"], folder.path());
     let told = text(&out.stdout);
     assert_eq!(out.status.code(), Some(0), "{}{told}", text(&out.stderr));
-    assert!(told.contains("1 of 6 members failed") && told.contains("to 2.0 %"), "{told}");
+    assert!(told.contains("1 of 6 members failed") && told.contains("to 2 %"), "{told}");
     let report = report(folder.path());
     assert_eq!(report["target"], 0.02);
     assert_eq!(report["complete"], true);

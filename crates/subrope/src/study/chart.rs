@@ -101,10 +101,9 @@ impl Drawing {
         self.text((middle, BOTTOM + 42.0), &chart.x_label, Anchor::Middle, 14.0, false);
         let at = (22.0, 0.5 * (TOP + BOTTOM));
         self.svg.turned(Text { at, text: &chart.y_label, anchor: Anchor::Middle, size: 14.0, bold: false }, 90.0);
-        if let Some((value, label)) = &chart.target {
+        if let Some((value, _)) = &chart.target {
             let at = self.y.at(*value);
             self.svg.line((LEFT, at), (RIGHT, at), TARGET);
-            self.text((RIGHT - 6.0, at - 5.0), label, Anchor::End, 12.0, false);
         }
     }
 
@@ -176,6 +175,11 @@ impl Drawing {
         if chart.front.len() > 1 {
             self.svg.line((LEGEND, y), (LEGEND + 28.0, y), FRONT);
             self.text((LEGEND + 36.0, y + 4.5), "Pareto front", Anchor::Start, 13.0, false);
+            y += LINE;
+        }
+        if let Some((_, label)) = &chart.target {
+            self.svg.line((LEGEND, y), (LEGEND + 28.0, y), TARGET);
+            self.text((LEGEND + 36.0, y + 4.5), label, Anchor::Start, 13.0, false);
             y += LINE;
         }
         if chart.series.iter().flat_map(|s| &s.points).any(|p| p.band.1 > p.band.0) {

@@ -24,11 +24,15 @@ pub(super) fn text(report: &Report) -> String {
 fn conditions(report: &Report) -> String {
     let machine = &report.machine;
     let mut out = format!(
-        "Scene `{}`. Time is {} of {}; the smallest of {} runs, all members in turn, {} thread{}.",
+        "Scene `{}`. Time is {} of {}; {}, {} thread{}.",
         report.scene,
         report.clock.word(),
         report.timed,
-        report.repeats,
+        if report.repeats == 1 {
+            "one run of each member".to_owned()
+        } else {
+            format!("the smallest of {} runs, all members in turn", report.repeats)
+        },
         report.threads,
         if report.threads == 1 { "" } else { "s" },
     );
@@ -221,7 +225,8 @@ pub(super) fn seconds(value: f64) -> String {
 
 /// A fraction in per cent, two digits that matter.
 pub(super) fn percent(fraction: f64) -> String {
-    format!("{} %", rounded(100.0 * fraction, 2))
+    let number = rounded(100.0 * fraction, 2);
+    format!("{} %", number.strip_suffix(".0").unwrap_or(&number))
 }
 
 #[cfg(test)]
@@ -235,7 +240,7 @@ mod tests {
         assert_eq!(digits(0.000_012_3), "1.230e-5");
         assert_eq!(percent(0.012_34), "1.2 %");
         assert_eq!(percent(0.000_012), "0.0012 %");
-        assert_eq!(percent(0.0), "0 %");
+        assert_eq!([0.0, 0.02].map(percent), ["0 %", "2 %"]);
         assert_eq!(seconds(0.123_45), "0.123");
     }
 }
