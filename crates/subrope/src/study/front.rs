@@ -70,12 +70,13 @@ pub fn cost_at(points: &[(f64, f64)], target: f64) -> Option<CostAt> {
     Some(CostAt::Between { cost: (points[bad].0.ln() + t * (good.0.ln() - points[bad].0.ln())).exp() })
 }
 
-/// Steepness below which a line is not drawn on.
-const LEAST_SLOPE: f64 = 0.1;
+/// How many times the cost of the last level a line is drawn on: what lies beyond is no estimate.
+const FAR: f64 = 100.0;
 
 fn drawn_on(a: (f64, f64), b: (f64, f64), target: f64) -> Option<f64> {
     let slope = (a.1 / b.1).ln() / (b.0 / a.0).ln();
-    (slope.is_finite() && slope > LEAST_SLOPE).then(|| b.0 * (b.1 / target).powf(1.0 / slope))
+    let factor = (b.1 / target).powf(1.0 / slope);
+    (slope > 0.0 && (1.0..FAR).contains(&factor)).then(|| b.0 * factor)
 }
 
 /// How many times more one series costs than another.
@@ -155,6 +156,8 @@ mod tests {
             panic!("not beyond")
         };
         assert!((estimate - 1000.0).abs() < 1e-6, "{estimate}");
+        let flat = [(1.0, 0.1), (2.0, 0.099)];
+        assert_eq!(cost_at(&flat, 0.01), Some(CostAt::MoreThan { cost: 2.0, estimate: None }));
         // Good by chance in the middle.
         let lucky = [(1.0, 0.1), (2.0, 0.001), (4.0, 0.05), (16.0, 0.005)];
         let Some(CostAt::Between { cost }) = cost_at(&lucky, 0.01) else { panic!("not between") };

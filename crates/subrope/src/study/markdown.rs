@@ -154,11 +154,11 @@ pub fn answers(report: &Report) -> String {
         if !times.is_empty() {
             let _ = write!(out, " Time needed: {}.", times.join("; "));
         }
-        let pairs: Vec<_> = q.pairs.iter().map(|p| pair(report, p)).collect();
-        if !pairs.is_empty() {
-            let _ = write!(out, " At equal error: {}.", pairs.join("; "));
+        if !q.pairs.is_empty() {
+            out += " At equal error:";
         }
         out.push('\n');
+        q.pairs.iter().for_each(|p| out += &format!("  - {}\n", pair(report, p)));
     }
     if report.quantities.len() > 1 {
         let found = report.cheapest_for_all.as_ref().map(|c| told(report, c));
@@ -193,8 +193,8 @@ fn pair(report: &Report, pair: &Pair) -> String {
         Bound::AtMost => "at most ",
     };
     let (slower, faster) = (&report.series[pair.slower].name, &report.series[pair.faster].name);
-    let guess = pair.ratio.estimate.map(|r| format!(", about {} times", digits(r))).unwrap_or_default();
-    format!("{slower} takes {bound}{} times the time of {faster}{guess}", digits(pair.ratio.value))
+    let guess = pair.ratio.estimate.map(|r| format!(", about {} times", rounded(r, 2))).unwrap_or_default();
+    format!("{slower} takes {bound}{} times the time of {faster}{guess}", rounded(pair.ratio.value, 2))
 }
 
 /// A text that does not end a cell of a table.
