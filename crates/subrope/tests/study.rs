@@ -173,6 +173,42 @@ name = "mean"
     assert!(note.contains("2 of three levels gave a value"), "{note}");
 }
 
+/// A signal from the keyboard reaches all processes of the group: the member stops after its increment, the study reports
+/// what there is.
+#[test]
+#[cfg(unix)]
+fn a_study_can_be_interrupted() {
+    use std::os::unix::process::CommandExt as _;
+    let (head, _) = STUDY.split_once("[[series]]").unwrap();
+    let head = head.replacen("repeats = 2", "repeats = 1", 1).replacen("extrapolated", "finest", 1);
+    let levels = "[[series]]\nname = \"mean\"\n[series.levels]\n\"strand.mesh.layers\" = [2, 900]\n";
+    let more = "\"step[0].increments\" = [{ fixed = 2 }, { fixed = 1000 }]\n";
+    let folder = folder(&(head + levels + more));
+    let mut study = Command::new(env!("CARGO_BIN_EXE_subrope"))
+        .args(["study", "study.toml"])
+        .current_dir(folder.path())
+        .process_group(0)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let history = folder.path().join("out/study/members/02_mean_level_2/run_1/history.csv");
+    let begun = || std::fs::read_to_string(&history).is_ok_and(|text| text.lines().count() > 2);
+    for _ in 0..1000 {
+        if begun() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(begun(), "the second member does not begin");
+    let group = format!("-{}", study.id());
+    assert!(Command::new("kill").args(["-INT", "--", &group]).status().unwrap().success());
+    assert_eq!(study.wait().unwrap().code(), Some(3));
+    let report = report(folder.path());
+    assert_eq!(report["complete"], false);
+    assert_eq!(report["members"][0]["status"]["state"], "done");
+    assert_eq!(report["members"][1]["status"]["state"], "not_run");
+}
+
 #[test]
 fn a_study_of_which_nothing_runs_is_an_error() {
     let (head, _) = STUDY.split_once("[[series]]").unwrap();

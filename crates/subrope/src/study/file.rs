@@ -30,6 +30,10 @@ pub struct Study {
     #[serde(default = "three")]
     #[schemars(range(min = 1, max = 1000))]
     pub repeats: usize,
+    /// Members whose first run takes longer run once \[s\]: what disturbs is small beside it. None when left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub repeat_below: Option<f64>,
     /// Time after which a member is stopped and counts as failed \[s\]; none when left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -46,12 +46,13 @@ impl Rounds<'_> {
         for round in 0..self.repeats {
             machine.calibrate();
             for (index, scene) in scenes.iter().enumerate() {
-                if runs[index].failure.is_some() || (round > 0 && once == Some(index)) {
+                if runs[index].failure.is_some() || (round > 0 && (once == Some(index) || self.is_long(&runs[index]))) {
                     continue;
                 }
                 observer.on_run(&self.file.members[index].name, round + 1, self.repeats);
                 let result = self.one(index, round, scene)?;
                 if self.stopped() && result.is_err() {
+                    observer.on_result(Err("interrupted"));
                     return Ok((runs, true));
                 }
                 observer.on_result(
@@ -72,6 +73,12 @@ impl Rounds<'_> {
 
     fn stopped(&self) -> bool {
         self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// Whether a member takes so long that one run tells enough.
+    fn is_long(&self, runs: &Runs) -> bool {
+        let limit = self.file.study.repeat_below.unwrap_or(f64::INFINITY);
+        runs.samples.first().and_then(Sample::wall).is_some_and(|seconds| seconds > limit)
     }
 
     /// The member that all others are compared with; its own time is of no use.
