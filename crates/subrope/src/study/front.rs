@@ -100,6 +100,8 @@ pub enum Bound {
     AtLeast,
     /// A number above it.
     AtMost,
+    /// Nothing but an estimate.
+    Estimated,
 }
 
 impl CostAt {
@@ -127,9 +129,13 @@ impl CostAt {
             (Between { .. }, Between { .. }) => Bound::Equal,
             (Between { .. } | MoreThan { .. }, AtMost { .. }) | (MoreThan { .. }, Between { .. }) => Bound::AtLeast,
             (AtMost { .. }, Between { .. } | MoreThan { .. }) | (Between { .. }, MoreThan { .. }) => Bound::AtMost,
-            (AtMost { .. }, AtMost { .. }) | (MoreThan { .. }, MoreThan { .. }) => return None,
+            (AtMost { .. }, AtMost { .. }) => return None,
+            (MoreThan { .. }, MoreThan { .. }) => Bound::Estimated,
         };
         let guess = self.best_guess().zip(other.best_guess()).map(|(a, b)| a / b);
+        if bound == Bound::Estimated {
+            return guess.map(|value| Ratio { value, bound, estimate: None });
+        }
         Some(Ratio { value: self.cost() / other.cost(), bound, estimate: guess.filter(|_| bound != Bound::Equal) })
     }
 }
@@ -173,7 +179,9 @@ mod tests {
         assert_eq!(ratio, Ratio { value: 5.0, bound: Bound::AtLeast, estimate: Some(20.0) });
         assert_eq!(between.over(more).unwrap().bound, Bound::AtMost);
         assert_eq!(between.over(between).unwrap(), Ratio { value: 1.0, bound: Bound::Equal, estimate: None });
-        assert_eq!(more.over(more), None);
+        let estimated = Ratio { value: 1.0, bound: Bound::Estimated, estimate: None };
+        assert_eq!(more.over(more), Some(estimated));
+        assert_eq!(more.over(CostAt::MoreThan { cost: 1.0, estimate: None }), None);
         assert_eq!(more.over(CostAt::AtMost { cost: 1.0 }).unwrap().estimate, None);
     }
 }

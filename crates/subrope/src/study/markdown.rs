@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::file::ReferenceKind;
-use super::front::{Bound, CostAt};
+use super::front::{Bound, CostAt, Ratio};
 use super::report::{Cheapest, MemberReport, MemberStatus, Pair, QuantityReport, Report, ValueReport};
 
 /// The whole text.
@@ -187,14 +187,21 @@ fn needs(series: &str, time: CostAt) -> String {
 }
 
 fn pair(report: &Report, pair: &Pair) -> String {
-    let bound = match pair.ratio.bound {
+    let (slower, faster) = (&report.series[pair.slower].name, &report.series[pair.faster].name);
+    let (common, error) = (times_of(pair.common), percent(pair.common_error));
+    let target = pair.at_target.map(|r| format!(", {} at the target", times_of(r))).unwrap_or_default();
+    format!("{slower} takes {common} the time of {faster} at {error}{target}")
+}
+
+fn times_of(ratio: Ratio) -> String {
+    let bound = match ratio.bound {
         Bound::Equal => "",
         Bound::AtLeast => "at least ",
         Bound::AtMost => "at most ",
+        Bound::Estimated => "about ",
     };
-    let (slower, faster) = (&report.series[pair.slower].name, &report.series[pair.faster].name);
-    let guess = pair.ratio.estimate.map(|r| format!(", about {} times", rounded(r, 2))).unwrap_or_default();
-    format!("{slower} takes {bound}{} times the time of {faster}{guess}", rounded(pair.ratio.value, 2))
+    let guess = ratio.estimate.map(|r| format!(" (about {})", rounded(r, 2))).unwrap_or_default();
+    format!("{bound}{}{guess} times", rounded(ratio.value, 2))
 }
 
 /// A text that does not end a cell of a table.

@@ -1,7 +1,7 @@
 //! From runs to a report.
 
 use super::file::{Clock, Reference, ReferenceKind, StudyFile};
-use super::front::{CostAt, Ratio, cheapest, cost_at, pareto};
+use super::front::{cheapest, cost_at, pareto};
 use super::machine::Machine;
 use super::members::Member;
 use super::order::{observed, richardson};
@@ -134,14 +134,16 @@ impl Compared<'_> {
         let points = self.points();
         let front = pareto(&points);
         front.iter().for_each(|&m| self.report.members[m].values[self.index].on_front = true);
-        let time_at_target: Vec<_> = self.report.series.iter().map(|s| self.time_at_target(&points, s)).collect();
+        let curve = |s: &SeriesReport| s.members.iter().filter_map(|&m| points[m]).collect::<Vec<_>>();
+        let curves: Vec<_> = self.report.series.iter().map(curve).collect();
+        let time_at_target: Vec<_> = curves.iter().map(|c| cost_at(c, self.report.target)).collect();
         let unit = quantity.unit.clone().or_else(|| quantity::known(&quantity.name).map(|k| k.unit.to_owned()));
         QuantityReport {
             name: quantity.name.clone(),
             unit: unit.unwrap_or_else(|| "-".to_owned()),
             orders: self.report.series.iter().map(|s| self.orders(s)).collect(),
             front,
-            pairs: pairs(&time_at_target),
+            pairs: pairs(&curves, self.report.target),
             time_at_target,
             cheapest: self.cheapest(&points),
             best: best(&points),
@@ -216,11 +218,6 @@ impl Compared<'_> {
         observed(&sizes, &series.members.iter().map(error).collect::<Vec<_>>())
     }
 
-    fn time_at_target(&self, points: &[Option<(f64, f64)>], series: &SeriesReport) -> Option<CostAt> {
-        let own: Vec<_> = series.members.iter().filter_map(|&m| points[m]).collect();
-        cost_at(&own, self.report.target)
-    }
-
     fn cheapest(&self, points: &[Option<(f64, f64)>]) -> Option<Cheapest> {
         found(self.report, points)
     }
@@ -247,19 +244,20 @@ fn best(points: &[Option<(f64, f64)>]) -> Option<Best> {
     known.min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// All pairs of series of which something can be said, the slower one first.
-fn pairs(times: &[Option<CostAt>]) -> Vec<Pair> {
-    let mut out = Vec::new();
-    for first in 0..times.len() {
-        for second in first + 1..times.len() {
-            let Some((a, b)) = times[first].zip(times[second]) else { continue };
-            let slower_first = a.cost() >= b.cost();
-            let (slower, faster) = if slower_first { (first, second) } else { (second, first) };
-            let ratio: Option<Ratio> = if slower_first { a.over(b) } else { b.over(a) };
-            out.extend(ratio.map(|ratio| Pair { slower, faster, ratio }));
-        }
-    }
-    out
+/// All pairs of series that are compared with the reference, the slower one first; points are (time, error) from coarse to
+/// fine.
+fn pairs(curves: &[Vec<(f64, f64)>], target: f64) -> Vec<Pair> {
+    let all = (0..curves.len()).flat_map(|i| (i + 1..curves.len()).map(move |j| (i, j)));
+    all.filter_map(|(i, j)| pair(curves, i, j, target)).collect()
+}
+
+fn pair(curves: &[Vec<(f64, f64)>], first: usize, second: usize, target: f64) -> Option<Pair> {
+    let common_error = curves[first].last()?.1.max(curves[second].last()?.1);
+    let over = |a: usize, b: usize, error| cost_at(&curves[a], error)?.over(cost_at(&curves[b], error)?);
+    let ratio = over(first, second, common_error)?;
+    let (slower, faster) = if ratio.value < 1.0 { (second, first) } else { (first, second) };
+    let common = over(slower, faster, common_error)?;
+    Some(Pair { slower, faster, common, common_error, at_target: over(slower, faster, target) })
 }
 
 /// The cheapest member that is good enough in all quantities.
@@ -276,17 +274,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pairs_name_the_slower_first() {
-        let times = [
-            Some(CostAt::Between { cost: 2.0 }),
-            None,
-            Some(CostAt::MoreThan { cost: 20.0, estimate: None }),
-            Some(CostAt::Between { cost: 8.0 }),
-        ];
-        let found = pairs(&times);
-        assert_eq!(found.len(), 3);
-        assert_eq!((found[0].slower, found[0].faster, found[0].ratio.value), (2, 0, 10.0));
-        assert_eq!((found[1].slower, found[1].faster, found[1].ratio.value), (3, 0, 4.0));
-        assert_eq!((found[2].slower, found[2].faster), (2, 3));
+    fn pairs_are_compared_at_an_error_that_both_reach() {
+        let slow = vec![(1.0, 0.4), (10.0, 0.1), (100.0, 0.025)];
+        let fast = vec![(0.5, 0.2), (5.0, 0.002)];
+        let found = pairs(&[slow, Vec::new(), fast], 0.01);
+        let [pair] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!((pair.slower, pair.faster, pair.common_error), (0, 2, 0.025));
+        // The fast one: from .2 to .002 in a decade of time, .025 at .5 x 10^(log10(8)/2).
+        let expected = 100.0 / (0.5 * 8.0_f64.sqrt());
+        assert!((pair.common.value - expected).abs() < 1e-9 * expected, "{pair:?}");
+        let at_target = pair.at_target.unwrap();
+        assert!(at_target.value > expected && at_target.estimate.is_some(), "{at_target:?}");
     }
 }

@@ -204,7 +204,7 @@ pub struct QuantityReport {
     pub front: Vec<usize>,
     /// Time from which a series stays at or below the target, per series \[s\].
     pub time_at_target: Vec<Option<CostAt>>,
-    /// Times of pairs of series at equal error, the target.
+    /// Times of pairs of series at equal error.
     pub pairs: Vec<Pair>,
     /// The cheapest member at or below the target.
     pub cheapest: Option<Cheapest>,
@@ -234,8 +234,12 @@ pub struct Pair {
     pub slower: usize,
     /// Index of the other.
     pub faster: usize,
-    /// Time of the first over that of the second.
-    pub ratio: Ratio,
+    /// Time of the first over that of the second at the smallest error that the finest levels of both reach.
+    pub common: Ratio,
+    /// That error.
+    pub common_error: f64,
+    /// The same at the target, where something can be said of it.
+    pub at_target: Option<Ratio>,
 }
 
 /// The cheapest member that reaches the target.
