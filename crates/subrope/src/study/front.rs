@@ -76,7 +76,7 @@ const FAR: f64 = 100.0;
 fn drawn_on(a: (f64, f64), b: (f64, f64), target: f64) -> Option<f64> {
     let slope = (a.1 / b.1).ln() / (b.0 / a.0).ln();
     let factor = (b.1 / target).powf(1.0 / slope);
-    (slope > 0.0 && (1.0..FAR).contains(&factor)).then(|| b.0 * factor)
+    (slope > 0.0 && (1.0..FAR).contains(&factor)).then_some(b.0 * factor)
 }
 
 /// How many times more one series costs than another.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Orders that Richardson's extrapolation is trusted with.
-const TRUSTED: [f64; 2] = [0.5, 6.0];
+const TRUSTED: std::ops::RangeInclusive<f64> = 0.5..=6.0;
 
 /// Why three values cannot be extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -47,7 +47,7 @@ pub fn richardson(sizes: [f64; 3], values: [f64; 3]) -> Result<Extrapolated, Not
         return Err(NotExtrapolated::NotMonotone);
     }
     let order = order_of(ratio, sizes);
-    if order < TRUSTED[0] || order > TRUSTED[1] {
+    if !TRUSTED.contains(&order) {
         return Err(NotExtrapolated::Order(order));
     }
     Ok(Extrapolated { value: values[2] + second / ((b / c).powf(order) - 1.0), order })

@@ -272,6 +272,7 @@ fn cheapest_for_all(report: &Report) -> Option<Cheapest> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Bound;
 
     #[test]
     fn pairs_are_compared_at_an_error_that_both_reach() {
@@ -284,6 +285,7 @@ mod tests {
         let expected = 100.0 / (0.5 * 8.0_f64.sqrt());
         assert!((pair.common.value - expected).abs() < 1e-9 * expected, "{pair:?}");
         let at_target = pair.at_target.unwrap();
-        assert!(at_target.value > expected && at_target.estimate.is_some(), "{at_target:?}");
+        assert_eq!(at_target.bound, Bound::AtLeast);
+        assert!(at_target.estimate.is_some_and(|e| e > expected), "{at_target:?}");
     }
 }
