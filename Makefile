@@ -1,11 +1,12 @@
 # make bend   build and run the main job, a strand bent by turning its ends -> out/bent_strand
 # make test   run all tests
+# make studies   run the studies of accuracy against cost, tables and charts to docs/studies (half an hour)
 # Without make: sh scripts/bend.sh, sh scripts/test.sh.
 
 RESULT ?= out/bent_strand/results.vtkhdf
 PICTURE ?= $(RESULT:.vtkhdf=.png)
 
-.PHONY: bend test check bench bench-draw picture clean setup
+.PHONY: bend test check bench bench-draw picture studies clean setup
 
 bend:
 	@sh scripts/bend.sh
@@ -29,6 +30,10 @@ bench-draw:
 picture:
 	@test -f "$(RESULT)" || sh scripts/bend.sh
 	@python=$$(sh scripts/venv.sh) && "$$python" scripts/render_strand.py "$(RESULT)" "$(PICTURE)"
+
+# STUDIES chooses some by name.
+studies:
+	@sh scripts/studies.sh $(STUDIES)
 
 clean:
 	cargo clean

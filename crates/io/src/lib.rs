@@ -4,6 +4,7 @@
 //! Every failure is an [`IoError`], whose [`class`](IoError::class) tells a wrong input from a failed output.
 
 pub mod atomic;
+pub mod cpu;
 pub mod deck;
 pub mod error;
 pub mod history;
@@ -13,6 +14,7 @@ pub mod summary;
 pub mod vtkhdf;
 
 pub use atomic::AtomicFile;
+pub use cpu::cpu_time;
 pub use deck::{Deck, DeckError, DeckErrorKind, DeckView, Ignored, NumberFormat, parse_deck, read_deck, write_deck};
 pub use error::{Action, ErrorClass, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
 pub use history::{Column, History, HistoryWriter, read_history};

@@ -9,6 +9,7 @@ use crate::model::ModelError;
 use crate::point::PointError;
 use crate::run::{RunError, output_advice};
 use crate::scene::SceneError;
+use crate::study::StudyError;
 
 /// Why a command did not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +27,9 @@ pub enum Error {
     /// The run ended early.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The study is wrong, or gives no report.
+    #[error(transparent)]
+    Study(#[from] StudyError),
     /// A mesh in a format that nobody writes.
     #[error("no mesh can be written to {}", path.display())]
     MeshFormat {
@@ -78,6 +82,7 @@ impl Error {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Run(error) => error.exit_code(),
+            Self::Study(error) => error.exit_code(),
             Self::Scene(_)
             | Self::Model(_)
             | Self::Point(_)
@@ -93,7 +98,7 @@ impl Error {
     pub fn plain(&self) -> String {
         match self {
             Self::Scene(error) => error.plain(),
-            Self::Point(PointError::Invalid(document)) => document.plain(),
+            Self::Point(PointError::Invalid(document)) | Self::Study(StudyError::Invalid(document)) => document.plain(),
             other => {
                 let mut text = format!("error: {other}");
                 let mut cause = std::error::Error::source(other);
@@ -116,6 +121,7 @@ impl Error {
         match self {
             Self::Scene(error) => Some(error),
             Self::Point(error) => Some(error),
+            Self::Study(error) => Some(error),
             _ => None,
         }
     }

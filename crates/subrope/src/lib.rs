@@ -8,6 +8,7 @@
 //! - [`check`]: what a scene amounts to, before solving;
 //! - [`plan`]: what a run will use and what it leaves out;
 //! - [`run`]: solving it, with results on disk;
+//! - [`study`]: a scene run with varied settings, errors against time and memory;
 //! - [`analytic`]: closed forms to compare a run with;
 //! - [`point`]: paths of one material point;
 //! - [`progress`]: how a run reports to whoever watches it;
@@ -69,5 +70,6 @@ pub mod progress;
 pub mod run;
 pub mod scene;
 pub mod sizing;
+pub mod study;
 
 pub use error::{Error, ExitCode};

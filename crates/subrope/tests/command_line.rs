@@ -63,7 +63,7 @@ fn usage_errors_have_exit_code_2() {
 #[test]
 fn schemas_are_json() {
     let folder = tempfile::tempdir().unwrap();
-    for arguments in [&["schema"][..], &["schema", "--point"]] {
+    for arguments in [&["schema"][..], &["schema", "--point"], &["schema", "--study"]] {
         let out = subrope(arguments, folder.path());
         assert_eq!(out.status.code(), Some(0));
         let schema: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();

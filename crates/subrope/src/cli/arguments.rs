@@ -45,6 +45,28 @@ pub(super) enum Command {
         #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
         threads: Option<u16>,
     },
+    /// Run a scene with varied settings: errors against time and memory
+    ///
+    /// A study file names a scene, series of settings from coarse to fine, quantities and a reference. Every member runs as
+    /// a process of its own, all members once, then all again; one that fails is reported and the others go on. Written:
+    /// study.csv, study.json, study.md, and per quantity the charts NAME_time.svg and NAME_memory.svg.
+    Study {
+        /// The study file
+        file: PathBuf,
+        /// Folder of the results [default: out/NAME beside the study NAME.toml]
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Runs of every member [default: the study's]
+        #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+        repeats: Option<u16>,
+        /// Relative error to be reached, such as 1% or 0.01 [default: the study's]: names the cheapest member that
+        /// reaches it, and compares the times of series at it
+        #[arg(long, value_parser = fraction)]
+        target: Option<f64>,
+        /// Keep the runs that an earlier study in the folder has finished, if scene and version are the same
+        #[arg(long)]
+        resume: bool,
+    },
     /// Drive a law along the paths of a point file (.json or .toml)
     Point {
         /// The point file: .json (every step) or .toml (a few targets, the steps between them are filled in)
@@ -70,5 +92,17 @@ pub(super) enum Command {
         /// The schema of point files (TOML) instead
         #[arg(long)]
         point: bool,
+        /// The schema of study files instead
+        #[arg(long, conflicts_with = "point")]
+        study: bool,
     },
+}
+
+/// A fraction between 0 and 1, also in per cent.
+fn fraction(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.trim().strip_suffix('%').map_or((text.trim(), 1.0), |n| (n.trim(), 0.01));
+    match number.parse::<f64>().map(|n| n * unit) {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("give a fraction between 0 and 1, such as 1% or 0.01".to_owned()),
+    }
 }

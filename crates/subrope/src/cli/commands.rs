@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::arguments::Command;
 use super::output::{print, write};
+use super::study::StudyCommand;
 use super::terminal::Terminal;
-use super::{interrupt, templates};
+use super::{interrupt, study, templates};
 use crate::check::check_scene;
 use crate::run::{RunOptions, RunOutcome};
 use crate::scene::{Scene, SceneFile};
@@ -18,9 +19,13 @@ pub(super) fn run(command: Command) -> Result<(), Error> {
         Command::New { folder: Some(folder), template, .. } => print(templates::write(&folder, &template)?.as_bytes()),
         Command::Check { scene } => check(&scene),
         Command::Run { scene, out, threads } => run_scene(&scene, out.as_deref(), threads.map(usize::from)),
+        Command::Study { file, out, repeats, target, resume } => {
+            let options = StudyCommand { out, repeats: repeats.map(usize::from), target, resume };
+            study::run(&file, &options)
+        }
         Command::Point { file, output, differences } => run_point(&file, output.as_deref(), differences),
         Command::Mesh { scene, output } => mesh_file::write_mesh(&SceneFile::load(&scene)?, &output),
-        Command::Schema { point } => schema(point),
+        Command::Schema { point, study } => schema(point, study),
     }
 }
 
@@ -95,7 +100,11 @@ fn run_point(path: &Path, output: Option<&Path>, differences: bool) -> Result<()
     }
 }
 
-fn schema(point: bool) -> Result<(), Error> {
-    let schema = if point { point::PathScene::schema() } else { Scene::schema() };
+fn schema(point: bool, study: bool) -> Result<(), Error> {
+    let schema = match (point, study) {
+        (true, _) => point::PathScene::schema(),
+        (_, true) => crate::study::Study::schema(),
+        _ => Scene::schema(),
+    };
     print(format!("{schema:#}\n").as_bytes())
 }

@@ -8,13 +8,16 @@ use crate::Error;
 use crate::document::{InvalidDocument, Problem};
 use crate::point::PointError;
 use crate::scene::SceneError;
+use crate::study::StudyError;
 
 /// The whole error; the problems of a document one after the other, each with its place.
 pub(super) fn graphical(error: &Error) -> Result<String, fmt::Error> {
     let handler = GraphicalReportHandler::new();
     let mut text = String::new();
     match error {
-        Error::Scene(SceneError::Invalid(document)) | Error::Point(PointError::Invalid(document)) => {
+        Error::Scene(SceneError::Invalid(document))
+        | Error::Point(PointError::Invalid(document))
+        | Error::Study(StudyError::Invalid(document)) => {
             located(document).try_for_each(|problem| handler.render_report(&mut text, &problem))?;
         }
         other => handler.render_report(&mut text, other)?,

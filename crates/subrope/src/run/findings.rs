@@ -19,6 +19,8 @@ use super::sections::{SectionShape, rotation_vector, section_shapes};
 pub struct Findings {
     /// Mean curvature: rotation of one end against the other over the length \[1/mm\].
     pub mean_curvature_per_mm: f64,
+    /// Largest curvature between neighbouring sections \[1/mm\].
+    pub largest_curvature_per_mm: f64,
     /// Zones of high curvature, lowest first: maxima above 1.5 times the mean, a diameter apart.
     pub curvature_zones: Vec<Zone>,
     /// Whether the zones mirror each other: |sum of their z| about the middle over the length \[-\].
@@ -83,6 +85,34 @@ impl Mode {
     }
 }
 
+/// Largest density of each kind of dissipation over all integration points, end values.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PeakDensities {
+    /// Transverse sliding \[mJ/mm^3\].
+    pub transverse_mj_per_mm3: f64,
+    /// Longitudinal sliding \[mJ/mm^3\].
+    pub longitudinal_mj_per_mm3: f64,
+}
+
+impl PeakDensities {
+    /// Of the committed state; `None` for laws without sliding.
+    #[must_use]
+    pub fn new(analysis: &Analysis) -> Option<Self> {
+        let fields = || analysis.model().contributions.iter().filter_map(|c| c.fields());
+        let peak = |mode: Mode| fields().filter_map(|f| peak_density(f, mode)).max_by(f64::total_cmp);
+        Some(Self {
+            transverse_mj_per_mm3: peak(Mode::Transverse)?,
+            longitudinal_mj_per_mm3: peak(Mode::Longitudinal)?,
+        })
+    }
+}
+
+fn peak_density(fields: &dyn SolidFields, mode: Mode) -> Option<f64> {
+    let offset = fields.state_variables().iter().find(|v| v.kind == mode.kind())?.offset;
+    let points = (0..fields.element_count()).flat_map(|e| (0..fields.points_per_element()).map(move |q| (e, q)));
+    Some(points.map(|(e, q)| fields.point_state(e, q).0[offset]).fold(0.0, f64::max))
+}
+
 /// Rotation between the ends below which a strand does not count as bent \[rad\].
 const LEAST_BEND: f64 = 1e-6;
 
@@ -113,6 +143,7 @@ impl Findings {
         let (transverse, longitudinal) = (mode(Mode::Transverse), mode(Mode::Longitudinal));
         Some(Self {
             mean_curvature_per_mm: mean,
+            largest_curvature_per_mm: curvature.iter().map(|(_, c)| *c).fold(0.0, f64::max),
             zone_asymmetry: zones.iter().map(|z| z.z_mm).sum::<f64>().abs() / length,
             curvature_zones: zones,
             out_of_plane_mm: sections.iter().map(|s| s.displacement.dot(&axis).abs()).fold(0.0, f64::max),

@@ -1,5 +1,6 @@
 //! Running a scene: results on disk while it goes on, a summary at the end.
 
+mod clock;
 mod columns;
 mod contacts;
 mod cycles;
@@ -18,7 +19,7 @@ mod summary;
 pub use cycles::CycleRow;
 pub use error::RunError;
 pub(crate) use error::output_advice;
-pub use findings::{Findings, Mode, ModeFinding, Zone};
+pub use findings::{Findings, Mode, ModeFinding, PeakDensities, Zone};
 pub use line_load::{AnalyticLineLoad, ContactLine, LineLoadSummary, LineSlice, contact_lines};
 pub use sections::{SectionShape, section_shapes};
 pub use strands::{StrandSummary, strands};
@@ -32,6 +33,7 @@ use crate::model::RopeModel;
 use crate::plan::Plan;
 use crate::progress::Observer;
 use crate::scene::SceneFile;
+use clock::Clock;
 use session::Session;
 
 /// What a run may be told.
@@ -83,9 +85,10 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
         observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
     }
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
+    let clock = Clock::start();
     // Everything that can be refused is refused before files of an earlier run are replaced.
     model.check_steps()?;
     observer.on_plan(&Plan::new(&file.scene, &model));
-    let session = Session::open(&file, &model, &folder)?;
+    let session = Session::open(&file, &model, &folder, clock)?;
     session.run(&mut model, options.interrupt, observer)
 }

@@ -9,9 +9,10 @@ use subrope_fem::FemError;
 use subrope_fem::analysis::{Analysis, Control, IncrementRecord};
 use subrope_io::{HistoryWriter, IoError, write_json};
 
+use super::clock::Clock;
 use super::cycles::CycleTable;
 use super::line_load::{FrameTime, LineLoadTable};
-use super::summary::{Status, Summary};
+use super::summary::{Elapsed, Status, Summary};
 use super::{RunError, RunFiles, RunOutcome, columns, cycles, line_load};
 use crate::Error;
 use crate::model::{ContactCells, CycleStep, MeshModel, RopeModel};
@@ -34,6 +35,7 @@ pub struct Session<'a> {
     files: RunFiles,
     output: Output,
     started: Instant,
+    clock: Clock,
 }
 
 /// Open files.
@@ -62,8 +64,8 @@ struct Fields {
 }
 
 impl<'a> Session<'a> {
-    /// Makes the folder and opens the files.
-    pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, Error> {
+    /// Makes the folder and opens the files; `clock` runs since the solution began.
+    pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path, clock: Clock) -> Result<Self, Error> {
         std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
         let mut files = RunFiles {
             folder: folder.to_path_buf(),
@@ -79,7 +81,7 @@ impl<'a> Session<'a> {
         let output = Output::open(file, model, &files).map_err(RunError::Output)?;
         let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
         files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
-        Ok(Self { file, files, output, started: Instant::now() })
+        Ok(Self { file, files, output, started: Instant::now(), clock })
     }
 
     /// Runs all steps.
@@ -89,7 +91,7 @@ impl<'a> Session<'a> {
         interrupt: Option<&AtomicBool>,
         observer: &mut dyn Observer,
     ) -> Result<RunOutcome, Error> {
-        let Self { file, files, output, started } = self;
+        let Self { file, files, output, started, clock } = self;
         let count = model.steps.len();
         let RopeModel { mesh, contact_cells, analysis, steps, half_cycles, .. } = &mut *model;
         let scenery = Scenery { mesh, cells: contact_cells };
@@ -119,6 +121,7 @@ impl<'a> Session<'a> {
                 break;
             }
         }
+        let solving = clock.read();
         let failure = watch.failure.take();
         #[cfg(feature = "hdf5")]
         if watch.output.fields.lost_frames > 0 {
@@ -131,7 +134,8 @@ impl<'a> Session<'a> {
         let cycles = watch.output.cycles.rows().to_vec();
         let closed = watch.output.close(scenery, analysis);
         let status = Status::of(&outcome);
-        let summary = Summary::new(file, model, status, &cycles, started.elapsed().as_secs_f64());
+        let elapsed = Elapsed { total: started.elapsed().as_secs_f64(), solving };
+        let summary = Summary::new(file, model, status, &cycles, elapsed);
         if let Some(error) = failure {
             return Err(RunError::Output(error).into());
         }

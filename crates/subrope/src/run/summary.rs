@@ -6,9 +6,10 @@ use serde::Serialize;
 use subrope_fem::FemError;
 use subrope_fem::analysis::Phase;
 
+use super::clock::Reading;
 use super::contacts::{self, PairSummary};
 use super::cycles::CycleRow;
-use super::findings::Findings;
+use super::findings::{Findings, PeakDensities};
 use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, contact_lines};
 use super::session::integration_points;
 use super::strands::{self, StrandSummary};
@@ -67,6 +68,9 @@ pub struct Summary {
     /// Cycle by cycle, where there are cycles.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cycles: Vec<CycleRow>,
+    /// Largest densities of dissipation, where strands slide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_densities: Option<PeakDensities>,
     /// Findings on a bent strand, where there is one.
     pub findings: Option<Findings>,
     /// What is given of a rope and what follows, where it is sized.
@@ -177,11 +181,24 @@ pub struct CountSummary {
     pub unstable_increments: usize,
 }
 
-/// Wall-clock time.
+/// What took how long.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Elapsed {
+    /// Everything from opening the files \[s\].
+    pub total: f64,
+    /// All steps.
+    pub solving: Reading,
+}
+
+/// Wall-clock time; `solving_cpu` apart.
 #[derive(Clone, Debug, Serialize)]
 pub struct SecondsSummary {
     /// Everything from opening the files.
     pub total: f64,
+    /// All steps, from the analysis of the first to the end of the last: without making the mesh and this summary.
+    pub solving: f64,
+    /// The same as time that all threads had a processor, where the system tells it.
+    pub solving_cpu: Option<f64>,
     /// Pattern, ordering, symbolic factorisation.
     pub analysis: f64,
     /// Search for faces that may touch.
@@ -195,7 +212,13 @@ pub struct SecondsSummary {
 }
 
 impl Summary {
-    pub(super) fn new(file: &SceneFile, model: &RopeModel, status: Status, cycles: &[CycleRow], seconds: f64) -> Self {
+    pub(super) fn new(
+        file: &SceneFile,
+        model: &RopeModel,
+        status: Status,
+        cycles: &[CycleRow],
+        elapsed: Elapsed,
+    ) -> Self {
         let analysis = &model.analysis;
         let mesh = &model.mesh.mesh;
         Self {
@@ -209,12 +232,13 @@ impl Summary {
             analytic_line_load: line_load::analytic(model),
             strands: strands::strands(&model.mesh, analysis),
             cycles: cycles.to_vec(),
+            peak_densities: PeakDensities::new(analysis),
             findings: Findings::new(mesh, &integration_points(mesh), analysis),
             sizing: RopeSizing::of(&file.scene).map(|sizing| sizing.summary()),
             plan: Plan::new(&file.scene, model),
             size: sizes(model),
             counts: counts(model),
-            seconds: times(model, seconds),
+            seconds: times(model, elapsed),
             peak_memory_mb: subrope_io::peak_memory().map(|bytes| bytes as f64 / 1e6),
             version: env!("CARGO_PKG_VERSION"),
             scene_hash: file.hash.clone(),
@@ -344,10 +368,12 @@ fn counts(model: &RopeModel) -> CountSummary {
     }
 }
 
-fn times(model: &RopeModel, total: f64) -> SecondsSummary {
+fn times(model: &RopeModel, elapsed: Elapsed) -> SecondsSummary {
     let phase = |p: Phase| model.analysis.phases().times[p as usize].as_secs_f64();
     SecondsSummary {
-        total,
+        total: elapsed.total,
+        solving: elapsed.solving.wall,
+        solving_cpu: elapsed.solving.cpu,
         analysis: phase(Phase::Analysis),
         search: phase(Phase::Search),
         assembly: phase(Phase::Assembly),
