@@ -9,9 +9,9 @@ use nalgebra::{DVector, Rotation3, Vector3};
 use subrope::model::RopeModel;
 use subrope::scene::Scene;
 use subrope_contact::{Contact, contacts};
-use subrope_fem::analysis::{Analysis, Increments, Model, NewtonOptions};
+use subrope_fem::analysis::{Analysis, Increments, Model, NewtonOptions, Silent};
 use subrope_fem::kinematics::{Image, Kinematics, NodeRule, Screw};
-use subrope_fem::linear::SolverOptions;
+use subrope_fem::linear::{Method, SolverOptions};
 use subrope_fem::{FemError, Repeated, Request};
 use subrope_geometry::{
     Handedness, Lay, Mesh, MeshLines, Rope, RopeStrand, Section, Strand, StrandOrigin, fibre_frames,
@@ -170,6 +170,23 @@ fn stretch(problem: &mut Problem, mesh: &Mesh, extension: f64, twist: f64) -> [f
     [row.reaction[0][0].z, row.reaction[0][1].z, row.totals.stored]
 }
 
+/// Only motions that stay with the screw are left to name.
+#[test]
+fn free_motions_of_a_layer_are_named() {
+    let lay = Lay::from_lay_length(27.0, Handedness::Right).unwrap();
+    let law = || StVenantKirchhoff::isotropic(1000.0, 0.3).unwrap();
+    for (lines, names) in [
+        (MeshLines::Yarns, &["translation along z", "rotation about z"][..]),
+        (MeshLines::Axis, &["translation along x", "translation along y", "translation along z", "rotation about z"]),
+    ] {
+        let (problem, _) = layer(Strand { length: 1.0, lay, lines, ..Strand::default() }, Brick::Plain, law());
+        let step = problem.step(Increments::Fixed(1)).hold(0, &[]).build();
+        let Err(FemError::RigidModes { count, motions, .. }) = problem.analysis.check_held(&step) else { panic!() };
+        assert_eq!(count, names.len(), "{motions}");
+        assert!(names.iter().all(|name| motions.contains(name)), "{motions}");
+    }
+}
+
 /// `F = E A (l - 1)`, `M = G J twist` at small strain, whatever the height of the layer.
 #[test]
 fn an_isotropic_cylinder_is_a_rod() {
@@ -222,14 +239,16 @@ fn a_helically_fibred_cylinder_needs_one_layer() {
 
 // ------------------------------------------------------------------------------------------------------ the whole rope
 
-/// Two turns of an elastic rope of wires.
+/// Three turns of an elastic rope of wires.
 fn wires(strands: usize) -> String {
+    // A little overlap at the start has wires touch from the first iteration on.
+    let gap = if strands == 3 { 0.0 } else { -0.01 };
     changed(
         &scene_file("three_wire_rope.toml"),
         &[
-            ("[rope]\n", &format!("[rope]\nstrands = {strands}\n")),
-            ("length = 68.0", "length = 136.0"),
-            ("core = 4\nrings = 2\nlayers = 30", "core = 2\nrings = 1\nlayers = 60"),
+            ("[rope]\n", &format!("[rope]\nstrands = {strands}\ngap = {gap:?}\n")),
+            ("length = 68.0", "length = 204.0"),
+            ("core = 4\nrings = 2\nlayers = 30", "core = 2\nrings = 1\nlayers = 90"),
             ("points = [12, 2]", "points = [16, 2]"),
             ("fixed = 4", "fixed = 2"),
         ],
@@ -251,15 +270,15 @@ fn line_loads(run: &Run, middle: &Middle, layers: usize) -> f64 {
 
 #[test]
 fn a_slice_is_the_middle_of_a_rope_of_wires() {
-    for strands in [3, 2, 4] {
+    for strands in [3, 2] {
         let text = wires(strands);
         let whole = run_scene(&text, None);
-        let middle = Middle::of(&whole, 60, 20);
-        let slice = run_scene(&slice_of(&text, &middle, 136.0), None);
+        let middle = Middle::of(&whole, 90, 30);
+        let slice = run_scene(&slice_of(&text, &middle, 204.0), None);
         let ([f, m], [force, moment]) = (load(&slice), load(&whole));
         // The slice stands for the whole length, the middle for its part of it.
-        let own = Middle { layers: [0, 1], axis_length: middle.axis_length / 20.0, ..middle };
-        let (p, pressure) = (line_loads(&slice, &own, 1), line_loads(&whole, &middle, 60));
+        let own = Middle { layers: [0, 1], axis_length: middle.axis_length / 30.0, ..middle };
+        let (p, pressure) = (line_loads(&slice, &own, 1), line_loads(&whole, &middle, 90));
         let parts = [f / force, m / moment, p / pressure];
         println!(
             "{strands} strands, elongation {:.6}, twist {:.3e}: force, moment and line load of the slice are {} of \
@@ -277,8 +296,8 @@ fn a_slice_is_the_middle_of_a_rope_of_wires() {
 /// What the rope of a length does is told per strand and pair, whatever the layers.
 #[test]
 fn totals_are_those_of_the_whole_length() {
-    let step = "[[step]]\nname = \"pull\"\nincrements = { fixed = 4 }\ntension = { elongation = 0.01 }\n";
-    let text = sliced(&short_rope(step));
+    let step = "[[step]]\nname = \"pull\"\nincrements = { fixed = 16 }\ntension = { elongation = 0.02 }\n";
+    let text = changed(&sliced(&short_rope(step)), &[("tau_l = 1.0\n", "tau_l = 1.0\nmu_t = 0.2\nmu_l = 0.1\n")]);
     let (_one, once) = run_with_files(&text);
     let twice = changed(&text, &[("length = 16.0", "length = 32.0"), ("layers = 10", "layers = 20")]);
     let (_two, twice) = run_with_files(&twice);
@@ -345,6 +364,25 @@ tension = { force = 50.0, twist = "free" }
     }
 }
 
+/// Two rows of the tangent are dense: every way to solve copes with them.
+#[test]
+fn all_solvers_give_the_same() {
+    let step = "[[step]]\nname = \"pull\"\ntension = { elongation = 0.01, twist = \"free\" }\n";
+    let text = sliced(&short_rope(step)).replace("K_t = 15.0\n", "K_t = 15.0\nmu_t = 0.2\n");
+    let usual = load(&run_scene(&text, None));
+    for method in [Method::BlockLu, Method::SparseLu] {
+        let built = RopeModel::from_scene(&scene(&text), None, Some(1)).unwrap();
+        let options = SolverOptions { unsymmetric: Some(method), ..SolverOptions::default() };
+        let steps = built.steps.clone();
+        let mut analysis = Analysis::new(built.analysis.into_model(), NewtonOptions::default(), options, 1);
+        steps.iter().for_each(|step| analysis.run_step(step, &mut Silent).unwrap());
+        let (force, moment) = analysis.point_reaction(0);
+        println!("{method:?}: {} N, {} N mm; usual {usual:?}", force.z, moment.z);
+        close("force", force.z, usual[0], 1e-5);
+        assert!(moment.z.abs() < 1e-4 * force.z && usual[1].abs() < 1e-4 * force.z);
+    }
+}
+
 /// A left-hand rope is the mirror of a right-hand one.
 #[test]
 fn hands_are_mirrors() {
@@ -354,9 +392,9 @@ fn hands_are_mirrors() {
     let left = text.replace("TWIST", "-2.0").replace("[rope]\n", "[rope]\nhand = \"left\"\n");
     let left = load(&run_scene(&left, None));
     println!("right {right:?}, left {left:?}");
-    // The mesh of a section is its own mirror, but the other of two neighbours carries the points of contact.
-    close("force", left[0], right[0], 2e-3);
-    close("torque", -left[1], right[1], 2e-3);
+    // A rope turned upside down shows its other neighbour: which of them carries the points of contact does not matter.
+    close("force", left[0], right[0], 1e-7);
+    close("torque", -left[1], right[1], 1e-7);
 }
 
 /// Fields of an image are turned back by what this says.
@@ -531,7 +569,8 @@ fn watch(text: &str) -> (Vec<State>, f64) {
     (watch.states, seconds)
 }
 
-/// Runs three lay lengths of the sub-rope, and the slice along the path of elongation and twist of the middle one.
+/// Runs three lay lengths of the sub-rope, and the slice along the path of elongation and twist of the middle one. At
+/// its ends the strands of the rope slide on their radii.
 fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
     let text = changed(
         &scene_file("sub_rope_tension.toml"),
@@ -539,7 +578,9 @@ fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
             ("length = 60.0 ", &format!("length = {length:?} ")),
             ("core = 4\nrings = 2\nlayers = 50", mesh),
             ("elongation = 0.05", &format!("elongation = {elongation:?}")),
-            ("initial = 0.0015", "initial = 0.004"),
+            ("initial = 0.0015", "initial = 0.0005"),
+            ("name = \"END_A\"", "name = \"END_A\"\nkind = \"sliding\""),
+            ("name = \"END_B\"", "name = \"END_B\"\nkind = \"sliding\""),
         ],
     );
     let (whole, slow) = watch(&text);
@@ -551,7 +592,7 @@ fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
         format!("elongation = {}\ntwist = {}", path(&|s| s.elongation), path(&|s| (s.twist * length).to_degrees()));
     let text = changed(
         &sliced(&text),
-        &[(&format!("elongation = {elongation:?}"), &motion), ("initial = 0.004, maximum = 0.1", "maximum = 1.0")],
+        &[(&format!("elongation = {elongation:?}"), &motion), ("initial = 0.0005, maximum = 0.1", "initial = 1.0")],
     );
     let (slice, fast) = watch(&text);
     let (a, b) = (whole.last().unwrap(), slice.last().unwrap());
@@ -575,6 +616,6 @@ fn a_slice_is_the_middle_of_a_sub_rope() {
 #[test]
 #[ignore = "some minutes"]
 fn a_slice_is_the_middle_of_a_coarse_sub_rope() {
-    let off = compare("core = 2\nrings = 2\nlayers = 99", 168.4, 0.02);
+    let off = compare("core = 2\nrings = 2\nlayers = 90", 168.4, 0.02);
     assert!(off.iter().all(|x| x.abs() < 0.02), "{off:?}");
 }
