@@ -18,10 +18,21 @@ impl Dense {
     /// A model with nothing prescribed.
     #[must_use]
     pub fn new(kinematics: Kinematics, solid: Box<dyn Contribution>) -> Self {
-        let contributions = vec![solid];
+        let start = vec![0.0; kinematics.coordinate_count()];
+        Self::of(kinematics, vec![solid], &start)
+    }
+
+    /// A model of several contributions with nothing prescribed, contacts made ready for some coordinates.
+    #[must_use]
+    pub fn of(kinematics: Kinematics, mut contributions: Vec<Box<dyn Contribution>>, q: &[f64]) -> Self {
         let free = vec![false; kinematics.coordinate_count()];
+        let mut committed = vec![0.0; 3 * kinematics.node_count()];
+        kinematics.displacements(q, &mut committed);
+        for contribution in &mut contributions {
+            contribution.prepare(&committed).unwrap();
+        }
         let system = System::new(&kinematics, &contributions, &free, &SolverOptions::default()).unwrap();
-        let committed = vec![0.0; 3 * kinematics.node_count()];
+        committed.fill(0.0);
         Self { kinematics, contributions, system, committed }
     }
 

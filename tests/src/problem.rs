@@ -115,7 +115,7 @@ impl StepBuilder<'_> {
         for &node in nodes {
             match self.kinematics.rules()[node as usize] {
                 NodeRule::Free { first } => self = self.prescribe(first + k, value),
-                NodeRule::Tied { .. } => panic!("node {node} is tied"),
+                NodeRule::Tied { .. } | NodeRule::Image { .. } => panic!("node {node} is tied"),
             }
         }
         self

@@ -31,6 +31,8 @@ pub struct Contact {
     tree: Tree,
     rounds: usize,
     fresh: bool,
+    /// Whether the primary surface goes on beyond its edges in truth.
+    confined: bool,
     buffers: Vec<PairBuffer>,
 }
 
@@ -104,8 +106,16 @@ impl Contact {
             tree: Tree::default(),
             rounds: 0,
             fresh: true,
+            confined: false,
             buffers: Vec::new(),
         })
+    }
+
+    /// The same for a primary surface that goes on beyond its edges in truth, as the images of a strand do: a point that
+    /// comes near a patch at an edge is an error then, and not a contact lost.
+    #[must_use]
+    pub fn confined(self) -> Self {
+        Self { confined: true, ..self }
     }
 
     /// Name of the pair.
@@ -187,15 +197,15 @@ impl Contact {
     }
 
     /// Feet of all points near the primary surface at some displacements; sets their hints. Answers secondary patch, foot
-    /// and gap.
-    fn feet(&mut self, displacement: &[f64]) -> Vec<(u32, Place, f64)> {
+    /// and gap; an error beyond the edge of a surface that goes on there.
+    fn feet(&mut self, displacement: &[f64]) -> Result<Vec<(u32, Place, f64)>, FemError> {
         let primary = Posture { surface: &self.primary, positions: &self.positions, displacement };
         let secondary = Posture { surface: &self.secondary, positions: &self.positions, displacement };
         let unbounded = self.primary.kind(0).is_unbounded();
         if !unbounded {
             self.tree.fit(&primary);
         }
-        let mut out = Vec::new();
+        let (mut out, mut beyond) = (Vec::new(), None);
         for patch in 0..self.secondary.patch_count() {
             let near = if unbounded { vec![0] } else { self.tree.near(&secondary, patch, self.options.reach) };
             if near.is_empty() {
@@ -211,11 +221,14 @@ impl Contact {
                 let Some(foot) = found else { continue };
                 point.hint = Some(foot.place);
                 if foot.gap < self.options.reach {
+                    let at_edge = self.confined && self.primary.is_at_edge(foot.place.patch as usize);
+                    // A foot on the far side of a body belongs to no contact.
+                    beyond = beyond.or((at_edge && foot.gap > -self.options.reach).then_some(foot.gap));
                     out.push((patch as u32, foot.place, foot.gap));
                 }
             }
         }
-        out
+        beyond.map_or(Ok(out), |gap| Err(self.beyond(gap)))
     }
 
     /// Pairs around all feet, sorted: those needed now, and those that may soon be.
@@ -251,6 +264,10 @@ impl Contact {
             list.dedup();
         }
         (needed, wide)
+    }
+
+    fn beyond(&self, gap: f64) -> FemError {
+        refused(ContactError::BeyondImages { name: self.name.clone(), gap })
     }
 
     fn failure(&self, gap: f64) -> FemError {
@@ -421,7 +438,7 @@ impl Contribution for Contact {
     }
 
     fn prepare(&mut self, displacement: &[f64]) -> Result<bool, FemError> {
-        let feet = self.feet(displacement);
+        let feet = self.feet(displacement)?;
         if std::mem::take(&mut self.fresh) && self.options.ramp > 0.0 {
             self.note_overlap(displacement);
         }
@@ -536,10 +553,11 @@ impl Contact {
         let count = self.secondary.nodes(patch).len();
         let symmetric = self.options.tangent == FrictionTangent::Symmetric;
         let mut energies = Energies::ZERO;
-        let mut no_foot = None;
+        let (mut no_foot, mut beyond) = (None, None);
         for point in &mut self.points[patch * self.per_patch..(patch + 1) * self.per_patch] {
             let x = combine(&point.own, &nodal);
             let Some(foot) = point.hint.or(point.old.place).and_then(|hint| project(&now, &x, hint)) else {
+                beyond = beyond.or((self.confined && point.old.pressure > 0.0).then_some(point.old.gap));
                 point.pulling = 0.0;
                 point.new = History { place: None, gap: f64::INFINITY, ..point.old };
                 (point.new.pressure, point.new.traction) = (0.0, Vector3::zeros());
@@ -567,7 +585,11 @@ impl Contact {
             }
             spread(buffer, &terms, point, count, &foot);
         }
-        no_foot.map_or(Ok(energies), |gap| Err(self.failure(gap)))
+        match (no_foot, beyond) {
+            (Some(gap), _) => Err(self.failure(gap)),
+            (None, Some(gap)) => Err(self.beyond(gap)),
+            (None, None) => Ok(energies),
+        }
     }
 }
 

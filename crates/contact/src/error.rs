@@ -12,6 +12,16 @@ pub enum ContactError {
         /// Face of the cell.
         face: u8,
     },
+    /// A face of too few nodes.
+    #[error("face {face} has {found} nodes, its kind of cell needs {needed}")]
+    FaceNodes {
+        /// Index of the face.
+        face: usize,
+        /// Nodes given.
+        found: usize,
+        /// Nodes needed.
+        needed: usize,
+    },
     /// More than two faces at an edge, or two with opposite normals.
     #[error("more than two faces of the surface meet at the edge between nodes {} and {}, or their normals disagree", nodes[0], nodes[1])]
     Branching {
@@ -67,6 +77,17 @@ pub enum ContactError {
         wanted: f64,
         /// Rounds spent.
         rounds: usize,
+    },
+    /// A point that touches beyond the images of a surface.
+    #[error(
+        "contact {name}: a point {gap:.3e} mm from the images of a strand reaches the last of them: the strands have moved \
+         along each other by several layers; shorten the increment, or take higher layers"
+    )]
+    BeyondImages {
+        /// The pair.
+        name: String,
+        /// Its gap \[mm\].
+        gap: f64,
     },
     /// A foot that is not unique: the point is as far away as the surface is curved.
     #[error(

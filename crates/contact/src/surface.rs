@@ -1,12 +1,13 @@
 //! Surfaces of patches: facets as meshed, smooth splines through the same nodes, and rigid planes and cylinders.
 
-use std::collections::HashMap;
+mod grid;
 
 use nalgebra::Vector3;
 use subrope_geometry::{CellKind, Face, Mesh};
 
 use crate::ContactError;
-use crate::patch::{PATCH_NODES, PatchKind, Shape, Stencil};
+use crate::patch::{PATCH_NODES, PatchKind, Shape};
+use grid::{Beyond, Quad, control_grid, neighbours, quarters, stencil, valences};
 
 /// How a surface is made of the faces of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,12 +32,6 @@ pub struct Surface {
     faces: Vec<u32>,
 }
 
-/// Patch and edge beyond each of the four edges of a patch.
-type Beyond = [Option<(u32, u8)>; 4];
-
-/// Corners of a patch: edge `e` runs from corner `e` to the next.
-type Quad = [u32; 4];
-
 impl Surface {
     /// A surface of faces of a mesh.
     ///
@@ -49,15 +44,46 @@ impl Surface {
             let nodes = mesh.face_nodes(*face).ok_or(ContactError::NoFace { cell: face.cell, face: face.face })?;
             lists.push(nodes.collect::<Vec<u32>>());
         }
-        match (smoothing, mesh.kind) {
-            (Smoothing::None, kind) => Self::facets(&lists, kind),
+        Self::of_faces(&lists, mesh.kind, smoothing)
+    }
+
+    /// A surface of faces between any nodes: four of each for cells of eight nodes, nine for those of 27, in the order of
+    /// the faces of a mesh, corners counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// [`ContactError::FaceNodes`] when a face has too few nodes; as [`Surface::new`].
+    pub fn of_faces(faces: &[Vec<u32>], kind: CellKind, smoothing: Smoothing) -> Result<Self, ContactError> {
+        let needed = if kind == CellKind::Hex8 { 4 } else { 9 };
+        if let Some((face, list)) = faces.iter().enumerate().find(|(_, list)| list.len() < needed) {
+            return Err(ContactError::FaceNodes { face, found: list.len(), needed });
+        }
+        match (smoothing, kind) {
+            (Smoothing::None, kind) => Self::facets(faces, kind),
             (Smoothing::Spline, CellKind::Hex8) => {
                 let quads: Vec<(Quad, u32)> =
-                    lists.iter().zip(0..).map(|(l, f)| ([l[0], l[1], l[2], l[3]], f)).collect();
+                    faces.iter().zip(0..).map(|(l, f)| ([l[0], l[1], l[2], l[3]], f)).collect();
                 Self::spline(&quads)
             }
-            (Smoothing::Spline, CellKind::Hex27) => Self::spline(&quarters(&lists)),
+            (Smoothing::Spline, CellKind::Hex27) => Self::spline(&quarters(faces)),
         }
+    }
+
+    /// The patches of some faces alone, with the shape that all faces give them: a spline does not end where they do. Faces
+    /// count from the first of them.
+    #[must_use]
+    pub fn part(&self, faces: std::ops::Range<usize>) -> Self {
+        let kept: Vec<usize> = (0..self.patch_count()).filter(|&p| faces.contains(&self.face(p))).collect();
+        let renumbered = |(patch, edge): (u32, u8)| Some((kept.binary_search(&(patch as usize)).ok()? as u32, edge));
+        let neighbours = kept.iter().map(|&p| self.neighbours[p].map(|beyond| beyond.and_then(renumbered)));
+        let mut part = Self::empty(neighbours.collect());
+        kept.iter().for_each(|&p| part.push(self.kinds[p].clone(), self.nodes(p), self.faces[p] - faces.start as u32));
+        part
+    }
+
+    /// Whether a patch lies at the edge of the surface.
+    #[must_use]
+    pub fn is_at_edge(&self, patch: usize) -> bool {
+        !self.kinds[patch].is_unbounded() && self.neighbours[patch].iter().any(Option::is_none)
     }
 
     fn facets(lists: &[Vec<u32>], kind: CellKind) -> Result<Self, ContactError> {
@@ -140,7 +166,7 @@ impl Surface {
         &self.kinds[patch]
     }
 
-    /// Index, in the list given to [`Surface::new`], of the face that a patch belongs to.
+    /// Index, in the list given to [`Surface::new`] or [`Surface::of_faces`], of the face that a patch belongs to.
     #[must_use]
     pub fn face(&self, patch: usize) -> usize {
         self.faces[patch] as usize
@@ -198,149 +224,6 @@ impl Surface {
         out.dedup();
         out
     }
-}
-
-/// Four quadrilaterals of every nine-node face.
-fn quarters(lists: &[Vec<u32>]) -> Vec<(Quad, u32)> {
-    const PARTS: [[usize; 4]; 4] = [[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]];
-    lists.iter().zip(0..).flat_map(|(l, f)| PARTS.iter().map(move |p| (p.map(|k| l[k]), f))).collect()
-}
-
-/// Patch and edge beyond every edge.
-fn neighbours(quads: &[Quad]) -> Result<Vec<Beyond>, ContactError> {
-    let mut edges: HashMap<(u32, u32), (u32, u8)> = HashMap::with_capacity(4 * quads.len());
-    for (quad, patch) in quads.iter().zip(0_u32..) {
-        for e in 0..4_u8 {
-            let (a, b) = edge_of(quad, e);
-            if edges.insert((a, b), (patch, e)).is_some() {
-                return Err(ContactError::Branching { nodes: [a, b] });
-            }
-        }
-    }
-    let beyond = |quad: &Quad, e: u8| {
-        let (a, b) = edge_of(quad, e);
-        edges.get(&(b, a)).copied()
-    };
-    Ok(quads.iter().map(|q| std::array::from_fn(|e| beyond(q, e as u8))).collect())
-}
-
-fn edge_of(quad: &Quad, e: u8) -> (u32, u32) {
-    (quad[e as usize], quad[(e as usize + 1) % 4])
-}
-
-/// Faces at every node, and whether it lies at the edge of the surface.
-fn valences(quads: &[Quad], neighbours: &[Beyond]) -> HashMap<u32, (u32, bool)> {
-    let mut out: HashMap<u32, (u32, bool)> = HashMap::new();
-    for (quad, beyond) in quads.iter().zip(neighbours) {
-        for e in 0..4 {
-            out.entry(quad[e]).or_default().0 += 1;
-            if beyond[e].is_none() {
-                out.entry(quad[e]).or_default().1 = true;
-                out.entry(quad[(e + 1) % 4]).or_default().1 = true;
-            }
-        }
-    }
-    out
-}
-
-/// A control point as a combination of nodes.
-type Combination = Vec<(u32, f64)>;
-
-/// The sixteen control points of a patch, first coordinate fastest; those beyond an edge of the surface continue
-/// linearly.
-fn control_grid(
-    patch: usize,
-    quads: &[Quad],
-    neighbours: &[Beyond],
-    valence: &HashMap<u32, (u32, bool)>,
-) -> Result<Vec<Combination>, ContactError> {
-    let quad = &quads[patch];
-    for node in quad {
-        let (count, edge) = valence.get(node).copied().unwrap_or_default();
-        if (edge && count > 2) || (!edge && count != 4) {
-            return Err(ContactError::Irregular { node: *node, faces: count });
-        }
-    }
-    let mut grid: Vec<Option<Combination>> = vec![None; 16];
-    let inner = [[1, 1], [2, 1], [2, 2], [1, 2]];
-    for (place, node) in inner.iter().zip(quad) {
-        grid[place[0] + 4 * place[1]] = Some(vec![(*node, 1.0)]);
-    }
-    for e in 0..4 {
-        let Some((beyond, entry)) = neighbours[patch][e] else { continue };
-        let other = &quads[beyond as usize];
-        let entry = entry as usize;
-        // Beyond corner e stands the end of the entry edge's successor, beyond corner e + 1 the start of its predecessor.
-        let at_first = other[(entry + 2) % 4];
-        let at_second = other[(entry + 3) % 4];
-        let (first, second) = (outward(inner[e], e), outward(inner[(e + 1) % 4], e));
-        grid[first[0] + 4 * first[1]] = Some(vec![(at_first, 1.0)]);
-        grid[second[0] + 4 * second[1]] = Some(vec![(at_second, 1.0)]);
-        // The face across the corner e: across the edge of `other` that leaves from corner e.
-        if let Some((diagonal, back)) = neighbours[beyond as usize][(entry + 1) % 4] {
-            let far = quads[diagonal as usize][(back as usize + 3) % 4];
-            let corner = outward(first, (e + 3) % 4);
-            grid[corner[0] + 4 * corner[1]] = Some(vec![(far, 1.0)]);
-        }
-    }
-    continue_linearly(&mut grid);
-    Ok(grid.into_iter().map(Option::unwrap_or_default).collect())
-}
-
-/// The place one step beyond an edge.
-fn outward([i, j]: [usize; 2], edge: usize) -> [usize; 2] {
-    match edge {
-        0 => [i, j - 1],
-        1 => [i + 1, j],
-        2 => [i, j + 1],
-        _ => [i - 1, j],
-    }
-}
-
-/// Missing lines of control points: twice the nearest less the next, across the edge that has nothing beyond it. A corner
-/// of which one line is there continues that line; where both are missing the order does not matter.
-fn continue_linearly(grid: &mut [Option<Combination>]) {
-    let fill = |grid: &mut [Option<Combination>], at: usize, near: usize, far: usize| {
-        if grid[at].is_none()
-            && let (Some(near), Some(far)) = (grid[near].clone(), grid[far].clone())
-        {
-            let scaled = |c: Combination, f: f64| c.into_iter().map(move |(n, w)| (n, f * w));
-            grid[at] = Some(scaled(near, 2.0).chain(scaled(far, -1.0)).collect());
-        }
-    };
-    // Lines that the faces beyond them have made: first and last row.
-    for row in [0, 12] {
-        fill(grid, row, row + 1, row + 2);
-        fill(grid, row + 3, row + 2, row + 1);
-    }
-    for row in [4, 8] {
-        fill(grid, row, row + 1, row + 2);
-        fill(grid, row + 3, row + 2, row + 1);
-    }
-    for column in 0..4 {
-        fill(grid, column, column + 4, column + 8);
-        fill(grid, column + 12, column + 8, column + 4);
-    }
-}
-
-/// Kind and nodes of a spline patch.
-fn stencil(grid: &[Combination]) -> (PatchKind, Vec<u32>) {
-    if grid.iter().all(|c| c.len() == 1) {
-        return (PatchKind::Spline(None), grid.iter().map(|c| c[0].0).collect());
-    }
-    let mut nodes: Vec<u32> = Vec::with_capacity(PATCH_NODES);
-    let mut weights = vec![[0.0; PATCH_NODES]; 16];
-    for (row, combination) in weights.iter_mut().zip(grid) {
-        for (node, w) in combination {
-            let at = nodes.iter().position(|n| n == node).unwrap_or_else(|| {
-                nodes.push(*node);
-                nodes.len() - 1
-            });
-            row[at] += w;
-        }
-    }
-    let count = nodes.len();
-    (PatchKind::Spline(Some(Box::new(Stencil { weights, nodes: count }))), nodes)
 }
 
 #[cfg(test)]

@@ -120,6 +120,24 @@ pub enum FemError {
         /// Where it is named.
         name: String,
     },
+    /// An image of a node that is not free.
+    #[error("node {node} is the image of node {master}, which does not move freely: take a free node")]
+    ImageOfTied {
+        /// Index of the image.
+        node: usize,
+        /// Index of its master.
+        master: usize,
+    },
+    /// A node that does not lie where a screw puts it.
+    #[error("node {node} lies {distance:.3e} mm from where the screw puts the image of node {master}")]
+    NotAnImage {
+        /// Index of the image.
+        node: usize,
+        /// Index of its master.
+        master: usize,
+        /// Distance \[mm\].
+        distance: f64,
+    },
     /// A section whose nodes lie on a line or in a point.
     #[error("the nodes of section {name} lie on one line, so that a rotation about it moves none: take more nodes")]
     DegenerateSection {

@@ -11,11 +11,13 @@ mod error;
 pub mod kinematics;
 pub mod linear;
 pub mod parallel;
+mod repeated;
 pub mod solid;
 
 pub use assembly::{Assembled, Equations, Evaluation, Jump, System};
 pub use contribution::{Configuration, Contribution, Energies, Product, Request, Sink, Verdict};
 pub use error::FemError;
+pub use repeated::Repeated;
 
 /// Temperature when nothing else is said \[K\].
 pub const REFERENCE_TEMPERATURE: f64 = 293.15;

@@ -39,8 +39,8 @@ pub use hexahedron::{Hex8, Hex27, Hexahedron, MappedPoint, QuadraturePoint, map_
 pub use mesh::{CellKind, Face, Mesh, exterior_faces};
 pub use quadrilateral::{FacePoint, Quad4, Quad9, Quadrilateral, surface_area};
 pub use rope::{
-    Compaction, HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeStrand, Sense, YarnLay,
-    YarnLayBy, join_strands,
+    Compaction, HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeSlice, RopeStrand, Sense,
+    YarnLay, YarnLayBy, join_strands,
 };
 pub use section::{Section, SectionArea, SectionMesh};
 pub use sizing::{Hierarchy, Quantity, SizingReport};

@@ -7,12 +7,14 @@ mod fibres;
 mod layout;
 mod search;
 mod shape;
+mod slice;
 
 pub use assembly::{RopeMesh, join_strands};
 pub use compaction::Compaction;
 pub use fibres::RopeFibres;
 pub use layout::{HelixRadius, LayBy, RopeLay, Sense, YarnLay, YarnLayBy};
 pub use shape::RopeShape;
+pub use slice::RopeSlice;
 
 use shape::GREATEST_DEGREE;
 

@@ -352,6 +352,39 @@ fn compaction_keeps_the_area() {
     assert!(error[2].abs() < 3e-3 && error[0] / error[1] > 3.5 && error[1] / error[2] > 3.8, "{error:?}");
 }
 
+/// Every layer of every strand is the image of the slice by a screw, and so are the yarns in it.
+#[test]
+fn a_slice_and_its_images_are_the_rope() {
+    let flat = Rope { compaction: Compaction::Degree(1.0), ..laid(LayBy::Angle(0.35), Handedness::Left) };
+    let quadratic = Rope { kind: CellKind::Hex27, layers: 7, ..laid(LayBy::Length(50.0), Handedness::Right) };
+    for rope in [flat, quadratic] {
+        let rope = Rope { origin: StrandOrigin::Bottom, ..rope };
+        let (whole, slice) = (rope.mesh().unwrap(), rope.slice().unwrap());
+        assert_eq!(slice.shape, whole.shape);
+        let (frames, own) = (whole.frames().unwrap(), fibre_frames(&slice.mesh, &slice.strand.fibres()).unwrap());
+        let (cells, points) = (slice.mesh.cell_count(), slice.mesh.kind.points());
+        let (mut off, mut turned) = (0.0_f64, 0.0_f64);
+        for (strand, layer) in (0..rope.strands).flat_map(|s| (0..rope.layers).map(move |l| (s, l))) {
+            let angle = TAU * strand as f64 / rope.strands as f64 + layer as f64 * slice.angle;
+            let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+            let up = Vector3::z() * (layer as f64 * slice.height);
+            let first = (strand * rope.layers + layer) * cells;
+            for cell in 0..cells {
+                for (&a, &b) in slice.mesh.cell(cell).iter().zip(whole.mesh.cell(first + cell)) {
+                    let image = turn * slice.mesh.points[a as usize] + up;
+                    off = off.max((image - whole.mesh.points[b as usize]).norm());
+                }
+                for q in 0..points {
+                    let image = turn.matrix() * own[cell * points + q];
+                    turned = turned.max((image - frames[(first + cell) * points + q]).amax());
+                }
+            }
+        }
+        println!("nodes off by {off:e} mm, frames by {turned:e}");
+        assert!(off < 1e-11 && turned < 1e-11, "{off:e} {turned:e}");
+    }
+}
+
 #[test]
 fn bad_ropes_are_refused() {
     let good = Rope::default();

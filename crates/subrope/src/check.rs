@@ -7,7 +7,7 @@ use subrope_geometry::quality::{AngleStatistics, MeshQuality, fibre_angles, mesh
 use subrope_io::Ignored;
 
 use crate::Error;
-use crate::model::{ModelError, RopeModel};
+use crate::model::{ModelError, RopeModel, SliceShape};
 use crate::plan::Plan;
 use crate::scene::SceneFile;
 use crate::sizing::{RopeSizing, SizingSummary};
@@ -35,6 +35,8 @@ pub struct CheckReport {
     pub memory_mb: f64,
     /// What a run uses and leaves out.
     pub plan: Plan,
+    /// What the mesh stands for, where it is a slice of a rope.
+    pub slice: Option<SliceShape>,
     /// What is given of a rope and what follows, where it is sized.
     pub sizing: Option<SizingSummary>,
     /// Keywords of the deck that were not read.
@@ -102,6 +104,7 @@ fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result
         state_bytes_per_point,
         memory_mb: memory / 1e6,
         plan,
+        slice: model.mesh.slice,
         sizing,
         ignored: model.ignored,
     })
@@ -124,6 +127,14 @@ fn system_size(model: &RopeModel) -> (SystemSize, f64) {
 impl fmt::Display for CheckReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "  size     {} elements, {} nodes, {} integration points", self.elements, self.nodes, self.points)?;
+        if let Some(SliceShape { strands, layers, angle, height, .. }) = &self.slice {
+            writeln!(
+                f,
+                "  symmetry helical: one layer of one strand, {height:.4} mm high and turned by {:.4} degrees, stands for \
+                 {strands} strands of {layers} layers; the ends of the rope are not modelled, their `kind` has no effect",
+                angle.to_degrees()
+            )?;
+        }
         if let Some(q) = &self.quality {
             writeln!(
                 f,

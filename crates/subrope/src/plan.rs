@@ -57,6 +57,7 @@ impl Plan {
     #[must_use]
     pub fn new(scene: &Scene, model: &RopeModel) -> Self {
         let parts = vec![
+            symmetry(scene, model),
             state(scene, model),
             element(scene, model),
             contact(model),
@@ -67,6 +68,20 @@ impl Plan {
         ];
         Self { parts }
     }
+}
+
+fn symmetry(scene: &Scene, model: &RopeModel) -> PlanPart {
+    let Some(slice) = &model.mesh.slice else {
+        let part = PlanPart::new("model", "every strand over its whole length");
+        let whole = "symmetry along and about the axis";
+        return match &scene.rope {
+            Some(_) => part.without(whole, "symmetry = \"none\"; \"helical\" takes one layer, for tension and torsion"),
+            None => part,
+        };
+    };
+    let uses = format!("one layer of one strand for {:.0}", slice.copies());
+    PlanPart::new("model", uses)
+        .without("the other strands and layers, ends", "symmetry = \"helical\": they are images of this one")
 }
 
 fn state(scene: &Scene, model: &RopeModel) -> PlanPart {

@@ -85,7 +85,7 @@ impl Analysis {
     pub fn new(model: Model, options: NewtonOptions, solver_options: SolverOptions, threads: usize) -> Self {
         let (coordinates, nodes) = (model.kinematics.coordinate_count(), model.kinematics.node_count());
         Self {
-            lever: lever(&model.kinematics),
+            lever: model.kinematics.lever(),
             model,
             options,
             solver_options,
@@ -120,6 +120,12 @@ impl Analysis {
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// The model with what its contributions have committed; the rest of the state is dropped.
+    #[must_use]
+    pub fn into_model(self) -> Model {
+        self.model
     }
 
     /// Committed coordinates.
@@ -336,14 +342,6 @@ impl Analysis {
 /// Whether the elements of a contribution have changed.
 fn prepare(contributions: &mut [Box<dyn Contribution>], displacement: &[f64]) -> Result<bool, FemError> {
     contributions.iter_mut().try_fold(false, |changed, c| Ok(c.prepare(displacement)? || changed))
-}
-
-/// Largest distance of a tied node from its reference point; one when nothing is tied.
-fn lever(kinematics: &Kinematics) -> f64 {
-    let x = kinematics.positions();
-    let arms = kinematics.points().iter().flat_map(|p| p.nodes.iter().map(|&n| (x[n as usize] - p.position).norm()));
-    let largest = arms.fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
 }
 
 /// How far a step is and how long the next increment shall be.

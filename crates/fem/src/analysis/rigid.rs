@@ -40,6 +40,7 @@ pub fn rigid_motions(
             }
         }
     }
+    hold_by_images(kinematics, &owner, &mut constraints);
     let several = constraints.len() > 1;
     let mut names = Vec::new();
     for (b, body) in constraints.iter().enumerate() {
@@ -49,6 +50,24 @@ pub fn rigid_motions(
     }
     names.extend(sliding_motions(kinematics, contributions, prescribed));
     names
+}
+
+/// Sine of half a turn below which an image counts as not turned.
+const TURNED: f64 = 1e-6;
+
+/// A body that is its own image under a screw can only move along and about z: a tilt does not stay with the screw, and
+/// neither does a motion across the axis unless the screw does not turn.
+fn hold_by_images(kinematics: &Kinematics, owner: &[Option<usize>], constraints: &mut [Body]) {
+    let Some(screw) = kinematics.screw() else { return };
+    for image in &screw.images {
+        let Some(b) = owner[image.node as usize] else { continue };
+        let turned = (0.5 * (image.turn + f64::from(image.layer) * screw.angle)).sin().abs() > TURNED;
+        (0..2).filter(|_| turned || image.layer != 0).for_each(|k| constraints[b].hold_rotation(k));
+        if turned {
+            let centre = constraints[b].centre;
+            (0..2).for_each(|k| constraints[b].hold_translation(&centre, k));
+        }
+    }
 }
 
 /// Translations of bodies of elements along the one direction in which they slide in all their sections.
@@ -78,7 +97,7 @@ fn sliding_motions(
                     name = format!("part {} of section {}", part + 1, point.name);
                     *direction
                 }
-                NodeRule::Tied { slide: None, .. } => return None,
+                NodeRule::Tied { slide: None, .. } | NodeRule::Image { .. } => return None,
             };
             if along.get_or_insert(direction).cross(&direction).norm() > PARALLEL {
                 return None;
@@ -165,6 +184,9 @@ fn bodies(kinematics: &Kinematics, contributions: &[Box<dyn Contribution>], by_s
     }
     for point in kinematics.points().iter().filter(|_| by_sections) {
         unite(&mut parent, &point.nodes);
+    }
+    for image in kinematics.screw().into_iter().flat_map(|screw| &screw.images) {
+        unite(&mut parent, &[image.master, image.node]);
     }
     let mut index = vec![usize::MAX; parent.len()];
     let mut bodies: Vec<Vec<u32>> = Vec::new();

@@ -107,9 +107,8 @@ impl Places {
                 NodeRule::Free { first } => {
                     (0..3).for_each(|k| push(first + k, node, Derivative::Component(k as usize)))
                 }
-                NodeRule::Tied { tie, .. } => {
-                    let tie = &ties[*tie as usize];
-                    tie.coordinates().for_each(|c| push(c, node, Derivative::Column(tie.column(c))));
+                NodeRule::Tied { tie, .. } | NodeRule::Image { tie, .. } => {
+                    ties[*tie as usize].columns().for_each(|(c, column)| push(c, node, Derivative::Column(column)));
                 }
             }
         }

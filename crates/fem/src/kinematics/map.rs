@@ -4,59 +4,58 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Kinematics, NodeRule, Rotation};
 
-/// Derivative of a tied node's position: `dx = du_c + rotation d(omega) + slide d(rho)`.
+/// Most coordinates that move one node: six of a reference point and one slide.
+const MOST: usize = 7;
+
+/// Derivative of a tied node's position: one column for every coordinate that moves it.
 #[derive(Clone, Debug, Default)]
 pub struct Tie {
-    first: u32,
-    /// `-[R a] T`.
-    rotation: Matrix3<f64>,
-    /// Coordinate and current direction of the sliding motion.
-    slide: Option<(u32, Vector3<f64>)>,
+    count: usize,
+    coordinates: [u32; MOST],
+    columns: [Vector3<f64>; MOST],
 }
 
 impl Tie {
-    pub(super) fn new(
+    /// Of a node of a section: `dx = du_c - [R a] T d(omega) + R d d(rho)`.
+    pub(super) fn of_section(
         first: u32,
         rotation: &Rotation,
         arm: &Vector3<f64>,
         slide: Option<(u32, Vector3<f64>, f64)>,
     ) -> Self {
         let slid = slide.map_or(*arm, |(_, direction, rho)| arm + direction * rho);
-        Self {
-            first,
-            rotation: -rotation.rotate(&slid).cross_matrix() * rotation.tangent(),
-            slide: slide.map(|(c, direction, _)| (c, rotation.rotate(&direction))),
+        let turning = -rotation.rotate(&slid).cross_matrix() * rotation.tangent();
+        let mut out = Self::default();
+        (0..3).for_each(|k| out.push(first + k, Vector3::ith(k as usize, 1.0)));
+        (0..3).for_each(|k| out.push(first + 3 + k, turning.column(k as usize).into_owned()));
+        if let Some((coordinate, direction, _)) = slide {
+            out.push(coordinate, rotation.rotate(&direction));
         }
+        out
+    }
+
+    /// Of an image: three coordinates of its master from `first`, turned, and the two of the screw.
+    pub(super) fn of_image(first: u32, rotation: &Matrix3<f64>, screw: [(u32, Vector3<f64>); 2]) -> Self {
+        let mut out = Self::default();
+        (0..3).for_each(|k| out.push(first + k, rotation.column(k as usize).into_owned()));
+        screw.into_iter().for_each(|(coordinate, column)| out.push(coordinate, column));
+        out
+    }
+
+    fn push(&mut self, coordinate: u32, column: Vector3<f64>) {
+        self.coordinates[self.count] = coordinate;
+        self.columns[self.count] = column;
+        self.count += 1;
     }
 
     /// Adds `J^T f`.
     pub(super) fn reduce(&self, f: &Vector3<f64>, out: &mut [f64]) {
-        let first = self.first as usize;
-        let moment = self.rotation.transpose() * f;
-        for k in 0..3 {
-            out[first + k] += f[k];
-            out[first + 3 + k] += moment[k];
-        }
-        if let Some((c, direction)) = &self.slide {
-            out[*c as usize] += direction.dot(f);
-        }
+        self.columns().for_each(|(coordinate, column)| out[coordinate as usize] += column.dot(f));
     }
 
-    /// The coordinates that move the node.
-    pub(crate) fn coordinates(&self) -> impl Iterator<Item = u32> {
-        (self.first..self.first + 6).chain(self.slide.iter().map(|(c, _)| *c))
-    }
-
-    /// Column of the derivative that belongs to a coordinate.
-    pub(crate) fn column(&self, coordinate: u32) -> Vector3<f64> {
-        match coordinate.wrapping_sub(self.first) {
-            k @ 0..=2 => Vector3::ith(k as usize, 1.0),
-            k @ 3..=5 => self.rotation.column(k as usize - 3).into_owned(),
-            _ => match &self.slide {
-                Some((c, direction)) if *c == coordinate => *direction,
-                _ => Vector3::zeros(),
-            },
-        }
+    /// The coordinates that move the node, each with its column of the derivative.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = (u32, Vector3<f64>)> {
+        self.coordinates.iter().copied().zip(self.columns.iter().copied()).take(self.count)
     }
 }
 
@@ -85,11 +84,14 @@ impl ElementMap {
                 NodeRule::Free { first } => (0..3).for_each(|k| push(first + k)),
                 NodeRule::Tied { point, slide, .. } => {
                     tied = true;
-                    let first = kinematics.points()[*point as usize].first;
-                    (0..6).for_each(|k| push(first + k));
+                    kinematics.points()[*point as usize].coordinates().for_each(&mut push);
                     if let Some((c, _)) = slide {
                         push(*c);
                     }
+                }
+                NodeRule::Image { image, .. } => {
+                    tied = true;
+                    kinematics.image_coordinates(*image).into_iter().for_each(&mut push);
                 }
             }
         }
@@ -102,58 +104,61 @@ impl ElementMap {
 pub struct Reduction {
     /// Full nodal matrix, row-major, component-major dofs: the caller fills it.
     pub nodal: Vec<f64>,
-    jacobian: Vec<f64>,
+    /// Derivatives of all nodes: place of the coordinate in the reduced matrix, column.
+    columns: Vec<(usize, Vector3<f64>)>,
+    /// Where those of every node end.
+    ends: Vec<usize>,
     half: Vec<f64>,
     /// Reduced matrix, row-major in the element's coordinates.
     pub reduced: Vec<f64>,
 }
 
 impl Reduction {
-    /// `J^T K J` of the nodal matrix into `reduced`.
+    /// `J^T K J` of the nodal matrix into `reduced`. Several nodes may follow one coordinate: their shares add up.
     pub fn apply(&mut self, kinematics: &Kinematics, ties: &[Tie], nodes: &[u32], map: &ElementMap) {
-        let (rows, m) = (3 * nodes.len(), map.coordinates.len());
-        self.fill_jacobian(kinematics, ties, nodes, &map.coordinates);
+        let (n, m) = (nodes.len(), map.coordinates.len());
+        self.find_columns(kinematics, ties, nodes, &map.coordinates);
         self.half.clear();
-        self.half.resize(rows * m, 0.0);
-        multiply_add(&self.nodal, &self.jacobian, rows, m, &mut self.half);
+        self.half.resize(3 * n * m, 0.0);
+        for (line, half) in self.nodal.chunks_exact(3 * n).zip(self.half.chunks_exact_mut(m)) {
+            let mut start = 0;
+            for (a, &end) in self.ends.iter().enumerate() {
+                let row = Vector3::new(line[a], line[n + a], line[2 * n + a]);
+                self.columns[start..end].iter().for_each(|(place, column)| half[*place] += row.dot(column));
+                start = end;
+            }
+        }
         self.reduced.clear();
         self.reduced.resize(m * m, 0.0);
-        for (j, h) in self.jacobian.chunks_exact(m).zip(self.half.chunks_exact(m)) {
-            for (line, &value) in self.reduced.chunks_exact_mut(m).zip(j) {
-                if value != 0.0 {
-                    line.iter_mut().zip(h).for_each(|(o, v)| *o += value * v);
+        let mut start = 0;
+        for (a, &end) in self.ends.iter().enumerate() {
+            for (place, column) in &self.columns[start..end] {
+                let target = &mut self.reduced[place * m..(place + 1) * m];
+                for (k, &value) in column.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+                    let half = &self.half[(k * n + a) * m..(k * n + a + 1) * m];
+                    target.iter_mut().zip(half).for_each(|(o, h)| *o += value * h);
                 }
             }
+            start = end;
         }
     }
 
-    /// Row `k n + a` holds the derivative of component `k` of node `a` by the coordinates.
-    fn fill_jacobian(&mut self, kinematics: &Kinematics, ties: &[Tie], nodes: &[u32], coordinates: &[u32]) {
-        let (n, m) = (nodes.len(), coordinates.len());
-        self.jacobian.clear();
-        self.jacobian.resize(3 * n * m, 0.0);
-        for (a, &node) in nodes.iter().enumerate() {
-            for (c, &coordinate) in coordinates.iter().enumerate() {
-                let column = match &kinematics.rules()[node as usize] {
-                    NodeRule::Free { first } => match coordinate.wrapping_sub(*first) {
-                        k @ 0..=2 => Vector3::ith(k as usize, 1.0),
-                        _ => continue,
-                    },
-                    NodeRule::Tied { tie, .. } => ties[*tie as usize].column(coordinate),
-                };
-                for k in 0..3 {
-                    self.jacobian[(k * n + a) * m + c] = column[k];
+    fn find_columns(&mut self, kinematics: &Kinematics, ties: &[Tie], nodes: &[u32], coordinates: &[u32]) {
+        self.columns.clear();
+        self.ends.clear();
+        for &node in nodes {
+            let columns = &mut self.columns;
+            let mut push = |coordinate: u32, column: Vector3<f64>| {
+                let place = coordinates.iter().position(|c| *c == coordinate);
+                columns.extend(place.map(|place| (place, column)));
+            };
+            match &kinematics.rules()[node as usize] {
+                NodeRule::Free { first } => (0..3).for_each(|k| push(first + k, Vector3::ith(k as usize, 1.0))),
+                NodeRule::Tied { tie, .. } | NodeRule::Image { tie, .. } => {
+                    ties[*tie as usize].columns().for_each(|(c, column)| push(c, column));
                 }
             }
-        }
-    }
-}
-
-/// `out += matrix * right`, `matrix` square with `rows` rows, `right` with `m` columns.
-fn multiply_add(matrix: &[f64], right: &[f64], rows: usize, m: usize, out: &mut [f64]) {
-    for (line, target) in matrix.chunks_exact(rows).zip(out.chunks_exact_mut(m)) {
-        for (&value, source) in line.iter().zip(right.chunks_exact(m)) {
-            target.iter_mut().zip(source).for_each(|(o, v)| *o += value * v);
+            self.ends.push(self.columns.len());
         }
     }
 }

@@ -2,15 +2,21 @@
 //!
 //! A free node owns three coordinates, its displacement. A reference point owns six, its displacement and its rotation
 //! vector, and carries the nodes of its section: rigidly, or with one coordinate more per node, its motion along a
-//! direction of the section (a radius), or with one coordinate more per part of the section that slides as a whole. Every
-//! tie is the same mechanism: a position `x(q)`, its first derivative (which
-//! moves forces and stiffness from nodes to coordinates) and its second (a term of the tangent).
+//! direction of the section (a radius), or with one coordinate more per part of the section that slides as a whole. The
+//! reference point of a [`Screw`] carries images of free nodes. Every tie is the same mechanism: a position `x(q)`, its
+//! first derivative (which moves forces and stiffness from nodes to coordinates) and its second (a term of the tangent).
 
 mod map;
 mod rotation;
+mod screw;
+mod sections;
 
 pub use map::{ElementMap, Reduction, Tie};
 pub use rotation::Rotation;
+pub use screw::{Image, Screw};
+
+use screw::PlacedScrew;
+use sections::{check_extent, claim, free_parts, free_radii};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -69,6 +75,13 @@ pub enum NodeRule {
         /// Coordinate and reference direction of the sliding motion.
         slide: Option<(u32, Vector3<f64>)>,
     },
+    /// The image of a free node under the screw of the model.
+    Image {
+        /// Number of the tie among all ties.
+        tie: u32,
+        /// Index among the images of the screw.
+        image: u32,
+    },
 }
 
 /// All nodes and reference points of a model, and how the former follow from the coordinates `q`.
@@ -77,6 +90,7 @@ pub struct Kinematics {
     positions: Vec<Vector3<f64>>,
     rules: Vec<NodeRule>,
     points: Vec<ReferencePoint>,
+    screw: Option<PlacedScrew>,
     coordinates: usize,
 }
 
@@ -120,26 +134,35 @@ impl Kinematics {
     /// [`FemError::DegenerateSection`]; [`FemError::BadSlide`] for a part without nodes or direction, and for one with a
     /// node that is not of its section or slides already.
     pub fn new(positions: Vec<Vector3<f64>>, sections: Vec<Section>) -> Result<Self, FemError> {
-        let mut owner: Vec<Option<u32>> = vec![None; positions.len()];
+        Self::numbered(positions, sections, None)
+    }
+
+    /// As [`Kinematics::new`], with nodes that follow others by a screw; its reference point comes last.
+    ///
+    /// # Errors
+    /// As there; [`FemError::ImageOfTied`] when a master is not free, [`FemError::NotAnImage`] when a node does not lie
+    /// where the screw puts it.
+    pub fn with_screw(positions: Vec<Vector3<f64>>, sections: Vec<Section>, screw: Screw) -> Result<Self, FemError> {
+        Self::numbered(positions, sections, Some(screw))
+    }
+
+    fn numbered(positions: Vec<Vector3<f64>>, sections: Vec<Section>, screw: Option<Screw>) -> Result<Self, FemError> {
+        let mut owner: Vec<Option<Owner>> = vec![None; positions.len()];
         for (index, section) in sections.iter().enumerate() {
-            claim(&mut owner, index as u32, section)?;
+            if section.nodes.is_empty() {
+                return Err(FemError::EmptySection { name: section.name.clone() });
+            }
+            section
+                .nodes
+                .iter()
+                .try_for_each(|&n| claim(&mut owner, Owner::Section(index as u32), n, &section.name))?;
             check_extent(section, &positions)?;
         }
-        let (mut next, mut ties) = (0_u32, 0_u32);
-        let mut rules: Vec<NodeRule> = owner
-            .iter()
-            .map(|o| match o {
-                None => {
-                    next += 3;
-                    NodeRule::Free { first: next - 3 }
-                }
-                Some(point) => {
-                    ties += 1;
-                    NodeRule::Tied { point: *point, tie: ties - 1, slide: None }
-                }
-            })
-            .collect();
-        let mut points = Vec::with_capacity(sections.len());
+        for (screw, (index, image)) in screw.iter().flat_map(|s| (0..).zip(&s.images).map(move |i| (s, i))) {
+            claim(&mut owner, Owner::Screw(index), image.node, &screw.name)?;
+        }
+        let (mut rules, mut next) = number(&owner);
+        let mut points = Vec::with_capacity(sections.len() + 1);
         for section in sections {
             let first = next;
             next += 6;
@@ -156,7 +179,13 @@ impl Kinematics {
             let Section { name, position, nodes, .. } = section;
             points.push(ReferencePoint { name, position, nodes, first, slides });
         }
-        Ok(Self { positions, rules, points, coordinates: next as usize })
+        let screw = screw.map(|s| PlacedScrew::new(s, points.len(), &positions, &rules)).transpose()?;
+        if let Some(placed) = &screw {
+            let (name, position) = (placed.screw.name.clone(), Vector3::zeros());
+            points.push(ReferencePoint { name, position, nodes: Vec::new(), first: next, slides: Vec::new() });
+            next += 6;
+        }
+        Ok(Self { positions, rules, points, screw, coordinates: next as usize })
     }
 
     /// Number of coordinates.
@@ -225,6 +254,7 @@ impl Kinematics {
                 out[3 * node..3 * node + 3].copy_from_slice(u.as_slice());
             }
         }
+        self.displace_images(q, out);
     }
 
     /// What a tied node has slid along its direction, before the section turns.
@@ -237,17 +267,19 @@ impl Kinematics {
 
     /// Derivatives of all tied nodes at `q`, in the order of their ties; free nodes need none.
     pub fn ties(&self, q: &[f64], out: &mut Vec<Tie>) {
-        out.resize_with(self.points.iter().map(|p| p.nodes.len()).sum(), Tie::default);
+        let images = self.screw().map_or(0, |s| s.images.len());
+        out.resize_with(images + self.points.iter().map(|p| p.nodes.len()).sum::<usize>(), Tie::default);
         for (index, point) in self.points.iter().enumerate() {
             let rotation = Rotation::new(self.point_motion(index, q).1);
             for &node in &point.nodes {
                 if let NodeRule::Tied { tie, slide, .. } = &self.rules[node as usize] {
                     let arm = self.positions[node as usize] - point.position;
                     let slide = slide.map(|(c, d)| (c, d, q[c as usize]));
-                    out[*tie as usize] = Tie::new(point.first, &rotation, &arm, slide);
+                    out[*tie as usize] = Tie::of_section(point.first, &rotation, &arm, slide);
                 }
             }
         }
+        self.tie_images(q, out);
     }
 
     /// Generalised forces `J^T f` from nodal forces.
@@ -260,7 +292,9 @@ impl Kinematics {
                         *o += v;
                     }
                 }
-                NodeRule::Tied { tie, .. } => ties[*tie as usize].reduce(&Vector3::from_column_slice(f), out),
+                NodeRule::Tied { tie, .. } | NodeRule::Image { tie, .. } => {
+                    ties[*tie as usize].reduce(&Vector3::from_column_slice(f), out);
+                }
             }
         }
     }
@@ -271,6 +305,7 @@ impl Kinematics {
             let rotation = Rotation::new(self.point_motion(index, q).1);
             self.curvature_of_point(point, &rotation, q, nodal, visit);
         }
+        self.curve_images(q, nodal, visit);
     }
 
     fn curvature_of_point(
@@ -299,9 +334,13 @@ impl Kinematics {
         visit(&omega, rotation.second_derivative(&moment, &dyad).as_slice());
     }
 
-    /// Force \[N\] and spatial moment about the current position of the point \[N mm\] of its nodes' forces.
+    /// Force \[N\] and spatial moment about the current position of the point \[N mm\] of its nodes' forces; of a screw the
+    /// tension and the torque.
     #[must_use]
     pub fn section_resultant(&self, point: usize, q: &[f64], nodal: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
+        if let Some(placed) = self.screw.as_ref().filter(|placed| placed.point == point) {
+            return self.screw_resultant(placed, q, nodal);
+        }
         let rotation = Rotation::new(self.point_motion(point, q).1);
         let p = &self.points[point];
         let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
@@ -316,72 +355,30 @@ impl Kinematics {
     }
 }
 
-fn claim(owner: &mut [Option<u32>], index: u32, section: &Section) -> Result<(), FemError> {
-    if section.nodes.is_empty() {
-        return Err(FemError::EmptySection { name: section.name.clone() });
-    }
-    for &node in &section.nodes {
-        let slot = owner
-            .get_mut(node as usize)
-            .ok_or_else(|| FemError::UnknownNode { node: node as usize, name: section.name.clone() })?;
-        if slot.is_some() {
-            return Err(FemError::NodeTiedTwice { node: node as usize, name: section.name.clone() });
-        }
-        *slot = Some(index);
-    }
-    Ok(())
+/// What moves a node that is not free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Owner {
+    /// Index of its section.
+    Section(u32),
+    /// Index among the images.
+    Screw(u32),
 }
 
-/// Every rotation of a section must move a node of it.
-fn check_extent(section: &Section, positions: &[Vector3<f64>]) -> Result<(), FemError> {
-    let first = positions[section.nodes[0] as usize];
-    let arms = || section.nodes.iter().map(|&n| positions[n as usize] - first);
-    let along = arms().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap_or_else(Vector3::zeros);
-    let size = along.norm();
-    let off_line = arms().map(|arm| arm.cross(&along).norm()).fold(0.0, f64::max);
-    if off_line > 1e-9 * size * size { Ok(()) } else { Err(FemError::DegenerateSection { name: section.name.clone() }) }
-}
-
-/// Gives a sliding coordinate to each node of a section that has a radius (a node on the axis has none).
-fn free_radii(section: &Section, positions: &[Vector3<f64>], rules: &mut [NodeRule], next: &mut u32) {
-    let radius = |node: u32| {
-        let arm = positions[node as usize] - section.position;
-        arm - section.axis * section.axis.dot(&arm)
-    };
-    let largest = section.nodes.iter().map(|&n| radius(n).norm()).fold(0.0, f64::max);
-    for &node in &section.nodes {
-        let r = radius(node);
-        if r.norm() > 1e-9 * largest
-            && let NodeRule::Tied { slide, .. } = &mut rules[node as usize]
-        {
-            *slide = Some((*next, r.normalize()));
-            *next += 1;
+/// Rules of all nodes, and the number of coordinates that free nodes take.
+fn number(owner: &[Option<Owner>]) -> (Vec<NodeRule>, u32) {
+    let (mut next, mut ties) = (0_u32, 0_u32);
+    let rules = owner.iter().map(|owner| {
+        let Some(owner) = owner else {
+            next += 3;
+            return NodeRule::Free { first: next - 3 };
+        };
+        ties += 1;
+        match owner {
+            Owner::Section(point) => NodeRule::Tied { point: *point, tie: ties - 1, slide: None },
+            Owner::Screw(image) => NodeRule::Image { tie: ties - 1, image: *image },
         }
-    }
-}
-
-/// Gives each part of section `index` its sliding coordinate.
-fn free_parts(
-    name: &str,
-    index: u32,
-    parts: &[Slide],
-    coordinates: &[u32],
-    rules: &mut [NodeRule],
-) -> Result<(), FemError> {
-    for (number, (part, &coordinate)) in parts.iter().zip(coordinates).enumerate() {
-        let refuse = || FemError::BadSlide { name: name.into(), part: number + 1 };
-        let direction = part.direction.try_normalize(0.0).filter(|d| d.iter().all(|c| c.is_finite()));
-        let direction = direction.filter(|_| !part.nodes.is_empty()).ok_or_else(refuse)?;
-        for &node in &part.nodes {
-            match rules.get_mut(node as usize) {
-                Some(NodeRule::Tied { point, slide: slide @ None, .. }) if *point == index => {
-                    *slide = Some((coordinate, direction));
-                }
-                _ => return Err(refuse()),
-            }
-        }
-    }
-    Ok(())
+    });
+    (rules.collect(), next)
 }
 
 /// 4x4 block that couples a rotation vector and a sliding coordinate.

@@ -40,15 +40,20 @@ impl Rope {
     pub fn mesh(&self) -> Result<RopeMesh, GeometryError> {
         let shape = self.shape()?;
         let strands = self.strands_of(&shape)?;
-        let (mesh, surfaces) = join(&strands, |strand| match strand.axis {
+        let (mesh, surfaces) = join(&strands, |strand| self.strand_mesh(strand, &shape))?;
+        let fibres = RopeFibres::new(&strands);
+        let strand_of_cell = (0..mesh.cell_count()).map(|cell| fibres.strand(cell) as u32).collect();
+        Ok(RopeMesh { mesh, strand_of_cell, strands, surfaces, fibres, shape })
+    }
+
+    /// The mesh of a strand, outer ones flattened where the rope is compacted.
+    pub(super) fn strand_mesh(&self, strand: &Strand, shape: &RopeShape) -> Result<Mesh, GeometryError> {
+        match strand.axis {
             StrandAxis::Helix(_) if shape.compaction > 0.0 => {
                 strand.mesh_of(self.flattened(strand, shape.helix_radius, shape.lay, shape.compaction)?)
             }
             _ => strand.mesh(),
-        })?;
-        let fibres = RopeFibres::new(&strands);
-        let strand_of_cell = (0..mesh.cell_count()).map(|cell| fibres.strand(cell) as u32).collect();
-        Ok(RopeMesh { mesh, strand_of_cell, strands, surfaces, fibres, shape })
+        }
     }
 }
 
@@ -62,7 +67,7 @@ pub fn join_strands(strands: &[Strand]) -> Result<(Mesh, Vec<SurfaceGrid>), Geom
     join(strands, Strand::mesh)
 }
 
-fn join(
+pub(super) fn join(
     strands: &[Strand],
     part: impl Fn(&Strand) -> Result<Mesh, GeometryError>,
 ) -> Result<(Mesh, Vec<SurfaceGrid>), GeometryError> {

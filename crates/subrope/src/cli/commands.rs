@@ -45,6 +45,10 @@ fn summary(file: &SceneFile) -> String {
     let Scene { title, strand, rope, law, element, end, constraint, step, .. } = &file.scene;
     let mesh = match (strand, rope, &file.deck) {
         (Some(strand), ..) => format!("{} hexahedra", strand.mesh.cell_count()),
+        (_, Some(rope), _) if rope.is_slice() => {
+            let cells = rope.mesh.cell_count() / rope.mesh.layers;
+            format!("{cells} hexahedra: a layer of one of {} strands", rope.strands)
+        }
         (_, Some(rope), _) => {
             let strands = rope.strand_count();
             format!("{} hexahedra in {strands} strands", strands * rope.mesh.cell_count())

@@ -24,7 +24,7 @@ macro_rules! templates {
 }
 
 /// All of them.
-pub(super) static TEMPLATES: [Template; 14] = templates! {
+pub(super) static TEMPLATES: [Template; 16] = templates! {
     "bent_strand_coarse": "a coarse strand bent by 45 degrees: the first minute",
     "bent_strand": "a strand bent to a half circle, with friction between rope-yarns",
     "bent_strand_elastic": "the same without friction",
@@ -34,6 +34,8 @@ pub(super) static TEMPLATES: [Template; 14] = templates! {
     "sub_rope_tension": "three strands laid together, in contact, stretched by 5 %",
     "sub_rope_free_twist": "the same with one end free to turn: how far a rope unlays",
     "sub_rope_cycles": "the same, then twenty cycles of tension: bedding-in, cycle by cycle",
+    "sub_rope_slice": "the tension of the sub-rope far from its ends: one layer of one strand stands for all",
+    "sub_rope_slice_cycles": "the same, then a thousand cycles of tension",
     "sub_rope_from_tex": "the same sized from its yarns and 90 000 tex, on ends where strands slide",
     "sub_rope_over_cylinder": "three strands under a load, bent over a rigid cylinder",
     "strand_on_rod": "a strand in tension against a rigid rod: identification across the yarns",
@@ -52,7 +54,7 @@ fn find(name: &str) -> Result<&'static Template, Error> {
 
 /// The names with a line about each.
 pub(super) fn list() -> String {
-    TEMPLATES.iter().map(|t| format!("{:22}{}\n", t.name, t.about)).collect()
+    TEMPLATES.iter().map(|t| format!("{:24}{}\n", t.name, t.about)).collect()
 }
 
 /// Writes a scene and a README into a folder, which is made if it is not there.

@@ -6,6 +6,7 @@ use subrope_fem::kinematics::{Section, SectionKind};
 use subrope_geometry::{Axis, Face, Mesh, surface_area};
 use subrope_material::transverse_modulus;
 
+use super::slice::{self, Images, SliceContact};
 use super::{MeshModel, ModelError};
 use crate::scene::{self, ContactMethod, ContactSmoothing, ContactTangent, RigidShape, Scene};
 
@@ -72,10 +73,7 @@ pub(super) fn contacts(
     let mut out = Vec::new();
     for entry in &scene.contact {
         for (name, primary, secondary) in pairs(scene, entry) {
-            let smoothing = match entry.smoothing {
-                ContactSmoothing::Spline => Smoothing::Spline,
-                ContactSmoothing::None => Smoothing::None,
-            };
+            let smoothing = smoothing(entry);
             let first = match scene.rigid.iter().position(|r| r.name == primary) {
                 Some(index) => rigid_surface(&bodies[index]),
                 None => surface(&mesh.mesh, &primary, smoothing)?,
@@ -89,6 +87,30 @@ pub(super) fn contacts(
         }
     }
     Ok(out)
+}
+
+/// The contact of a slice, if its scene has one.
+pub(super) fn slice_contact(
+    scene: &Scene,
+    mesh: &MeshModel,
+    images: &mut Images,
+    positions: &mut Vec<Vector3<f64>>,
+) -> Result<Option<(Contact, ContactCells)>, ModelError> {
+    let Some(entry) = scene.contact.first() else { return Ok(None) };
+    let modulus = transverse_modulus(&*crate::law::build(&scene.law)?)?;
+    let wanted = SliceContact {
+        name: &entry.name,
+        smoothing: smoothing(entry),
+        options: options(scene, entry, modulus, size(scene, mesh)),
+    };
+    slice::contact(mesh, images, &wanted, positions).map(Some)
+}
+
+fn smoothing(entry: &scene::Contact) -> Smoothing {
+    match entry.smoothing {
+        ContactSmoothing::Spline => Smoothing::Spline,
+        ContactSmoothing::None => Smoothing::None,
+    }
 }
 
 fn refused(cause: ContactError) -> ModelError {

@@ -7,7 +7,7 @@ use subrope_geometry::{
 };
 use subrope_io::{Ignored, read_deck};
 
-use super::ModelError;
+use super::{ModelError, SliceShape};
 use crate::scene::{self, Deck, End, Fibres, Formulation, Scene};
 
 /// Mesh, fibre frames and what they were made from.
@@ -21,6 +21,8 @@ pub struct MeshModel {
     pub strand: Option<Strand>,
     /// The generated rope, if it is one: the strand of every cell, and what its shape came to.
     pub rope: Option<RopeModelShape>,
+    /// What the mesh stands for, when it is one layer of one strand; the strand of `rope` is that layer then.
+    pub slice: Option<SliceShape>,
 }
 
 /// What a generated rope adds to its mesh.
@@ -43,6 +45,7 @@ impl MeshModel {
         let kind = cell_kind(scene.element.formulation);
         let (model, ignored) = match (&scene.strand, &scene.rope, &scene.deck, deck) {
             (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
+            (None, Some(rope), ..) if rope.is_slice() => (Self::generate_slice(scene, rope, kind)?, Vec::new()),
             (None, Some(rope), ..) => (Self::generate_rope(scene, rope, kind)?, Vec::new()),
             (None, None, Some(entry), Some(path)) => Self::read(entry, path)?,
             _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
@@ -60,14 +63,24 @@ impl MeshModel {
         let mut mesh = strand.mesh()?;
         add_sets(&mut mesh);
         let frames = fibre_frames(&mesh, &strand.fibres())?;
-        Ok(Self { mesh, frames, strand: Some(strand), rope: None })
+        Ok(Self { mesh, frames, strand: Some(strand), rope: None, slice: None })
     }
 
     fn generate_rope(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Result<Self, ModelError> {
         let meshed = super::rope::rope_mesh(scene, entry, kind)?;
         let frames = meshed.frames()?;
         let RopeMesh { mesh, strand_of_cell, strands, shape, .. } = meshed;
-        Ok(Self { mesh, frames, strand: None, rope: Some(RopeModelShape { strand_of_cell, strands, shape }) })
+        let rope = Some(RopeModelShape { strand_of_cell, strands, shape });
+        Ok(Self { mesh, frames, strand: None, rope, slice: None })
+    }
+
+    fn generate_slice(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Result<Self, ModelError> {
+        let layer = super::rope::rope_of(scene, entry, kind).slice()?;
+        let frames = fibre_frames(&layer.mesh, &layer.strand.fibres())?;
+        let slice = SliceShape::new(&layer, entry.strands, entry.mesh.layers);
+        let strand_of_cell = vec![0; layer.mesh.cell_count()];
+        let rope = RopeModelShape { strand_of_cell, strands: vec![layer.strand], shape: layer.shape };
+        Ok(Self { mesh: layer.mesh, frames, strand: None, rope: Some(rope), slice: Some(slice) })
     }
 
     /// Volume of the smooth strands \[mm^3\], for a generated mesh.
@@ -90,7 +103,13 @@ impl MeshModel {
         };
         rename_sets(&mut mesh, entry)?;
         add_all(&mut mesh);
-        Ok((Self { mesh, frames, strand: None, rope: None }, deck.ignored))
+        Ok((Self { mesh, frames, strand: None, rope: None, slice: None }, deck.ignored))
+    }
+
+    /// How often a layer of a slice counts along a strand; once where the whole strand is meshed.
+    #[must_use]
+    pub fn layers_per_strand(&self) -> f64 {
+        self.slice.map_or(1.0, |slice| slice.layers as f64)
     }
 
     /// A node set by name.

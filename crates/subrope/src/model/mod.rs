@@ -6,18 +6,22 @@ mod law;
 mod loads;
 mod mesh;
 mod rope;
+mod slice;
 mod steps;
 
 pub use contact::ContactCells;
 pub use error::ModelError;
 pub use mesh::{MeshModel, RopeModelShape};
+pub use slice::SliceShape;
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};
 use subrope_fem::linear::SolverOptions;
-use subrope_fem::{Contribution, FemError};
+use subrope_fem::{Contribution, FemError, Repeated};
 use subrope_io::Ignored;
+
+use slice::Images;
 
 use crate::run::RunError;
 use crate::scene::{End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
@@ -78,29 +82,55 @@ impl RopeModel {
         threads: Option<usize>,
     ) -> Result<Self, ModelError> {
         let (mesh, ignored) = MeshModel::new(scene, deck)?;
-        let solid = law::solid(&mesh, &scene.law, scene.element.formulation)?;
-        let mut positions = mesh.mesh.points.clone();
-        let mut sections = scene.end.iter().map(|end| section_of(end, scene, &mesh)).collect::<Result<Vec<_>, _>>()?;
-        let bodies = contact::rigid_bodies(scene, &mesh, &mut positions, &mut sections)?;
-        let contacts = contact::contacts(scene, &mesh, &bodies, &positions)?;
-        let kinematics = Kinematics::new(positions, sections)?;
-        let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
-        let mut contact_cells = Vec::with_capacity(contacts.len());
-        for (contact, cells) in contacts {
-            contributions.push(Box::new(contact));
-            contact_cells.push(cells);
-        }
-        if let Some(stabilisation) = &scene.solver.stabilisation {
-            contributions.push(Box::new(Viscous::new(stabilisation.viscosity, &mesh.node_volumes()?)));
-        }
+        let (model, contact_cells) = match mesh.slice {
+            Some(shape) => slice_model(scene, &mesh, &shape)?,
+            None => whole_model(scene, &mesh)?,
+        };
+        let kinematics = &model.kinematics;
         let program = Program::new(scene);
-        let steps = steps::steps(scene, &program, &mesh, &kinematics)?;
-        let half_cycles = program.steps.iter().map(|s| CycleStep::of(scene, s, &kinematics)).collect();
+        let steps = steps::steps(scene, &program, &mesh, kinematics)?;
+        let half_cycles = program.steps.iter().map(|s| CycleStep::of(scene, s, kinematics)).collect();
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
-        let model = Model { kinematics, contributions };
         let analysis = Analysis::new(model, newton(scene), solver_options(), threads);
         Ok(Self { mesh, analysis, steps, half_cycles, ignored, contact_cells })
     }
+}
+
+type Parts = (Model, Vec<ContactCells>);
+
+/// All bricks of a mesh, its ends, rigid bodies and contacts.
+fn whole_model(scene: &Scene, mesh: &MeshModel) -> Result<Parts, ModelError> {
+    let solid = law::solid(mesh, &scene.law, scene.element.formulation)?;
+    let mut positions = mesh.mesh.points.clone();
+    let mut sections = scene.end.iter().map(|end| section_of(end, scene, mesh)).collect::<Result<Vec<_>, _>>()?;
+    let bodies = contact::rigid_bodies(scene, mesh, &mut positions, &mut sections)?;
+    let contacts = contact::contacts(scene, mesh, &bodies, &positions)?;
+    let kinematics = Kinematics::new(positions, sections)?;
+    let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
+    let mut contact_cells = Vec::with_capacity(contacts.len());
+    for (contact, cells) in contacts {
+        contributions.push(Box::new(contact));
+        contact_cells.push(cells);
+    }
+    if let Some(stabilisation) = &scene.solver.stabilisation {
+        contributions.push(Box::new(Viscous::new(stabilisation.viscosity, &mesh.node_volumes()?)));
+    }
+    Ok((Model { kinematics, contributions }, contact_cells))
+}
+
+/// One layer of one strand and its images; everything counts as often as the rope has it.
+fn slice_model(scene: &Scene, mesh: &MeshModel, shape: &SliceShape) -> Result<Parts, ModelError> {
+    let solid = law::solid(mesh, &scene.law, scene.element.formulation)?;
+    let mut positions = mesh.mesh.points.clone();
+    let mut images = Images::new(shape, &mesh.mesh, scene.slice_end().map_or("END_B", |end| end.name.as_str()));
+    let mut contributions: Vec<Box<dyn Contribution>> = vec![Box::new(Repeated::new(solid, shape.copies()))];
+    let mut contact_cells = Vec::new();
+    if let Some((contact, cells)) = contact::slice_contact(scene, mesh, &mut images, &mut positions)? {
+        contributions.push(Box::new(Repeated::new(Box::new(contact), shape.contact_copies())));
+        contact_cells.push(cells);
+    }
+    let kinematics = Kinematics::with_screw(positions, Vec::new(), images.screw)?;
+    Ok((Model { kinematics, contributions }, contact_cells))
 }
 
 impl RopeModel {

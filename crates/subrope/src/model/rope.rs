@@ -15,7 +15,7 @@ pub(super) fn rope_mesh(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> R
 }
 
 /// The radius of a checked scene is given or follows; what has neither is refused by the geometry.
-fn rope_of(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Rope {
+pub(super) fn rope_of(scene: &Scene, entry: &scene::Rope, kind: CellKind) -> Rope {
     let sizing = RopeSizing::of(scene);
     let radius = entry.radius.or(sizing.as_ref().and_then(RopeSizing::radius)).unwrap_or(f64::NAN);
     let section = section(&entry.mesh);

@@ -27,6 +27,7 @@ fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinemat
             }
         }
     }
+    prescriptions.extend(held_motions(mesh, kinematics));
     reject_twice(&step.name, &mut prescriptions, mesh, kinematics)?;
     let mut loads = Vec::new();
     for load in &step.loads {
@@ -56,6 +57,13 @@ fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinemat
         return Err(ModelError::MissedKnot { step: step.name.clone(), knot: *knot, count });
     }
     Ok(Step { name: step.name.clone(), duration: step.duration, prescriptions, loads, increments, knots })
+}
+
+/// The motions of a slice along and about z, which nothing resists: held at a node on the x axis.
+fn held_motions(mesh: &MeshModel, kinematics: &Kinematics) -> Vec<Prescription> {
+    let rule = mesh.slice.map(|slice| kinematics.rules()[slice.held as usize]);
+    let Some(NodeRule::Free { first }) = rule else { return Vec::new() };
+    vec![Prescription::ramp(first + 1, 0.0), Prescription::ramp(first + 2, 0.0)]
 }
 
 /// Fractions of the step at which a history has a corner.
@@ -99,6 +107,8 @@ fn coordinates(
 ) -> Result<Vec<u32>, ModelError> {
     let component = motion.component.index() as u32;
     match &motion.target {
+        // The other end of a slice stays, and has no reference point.
+        MotionTarget::Point(name) if mesh.slice.is_some() && kinematics.point_index(name).is_none() => Ok(Vec::new()),
         MotionTarget::Point(name) => Ok(vec![kinematics.points()[point(kinematics, name)?].first + component]),
         MotionTarget::Constraint(name) => {
             let Some(constraint) = scene.constraint.iter().find(|c| &c.name == name) else { return Ok(Vec::new()) };
@@ -106,7 +116,7 @@ fn coordinates(
                 .iter()
                 .map(|&node| match kinematics.rules()[node as usize] {
                     NodeRule::Free { first } => Ok(first + component),
-                    NodeRule::Tied { .. } => Err(ModelError::ConstrainedSectionNode {
+                    NodeRule::Tied { .. } | NodeRule::Image { .. } => Err(ModelError::ConstrainedSectionNode {
                         constraint: name.clone(),
                         node: mesh.mesh.point_label(node as usize),
                     }),
@@ -132,7 +142,7 @@ fn reject_twice(
     let node = owner.map_or(0, |n| mesh.mesh.point_label(n));
     let component = ["ux", "uy", "uz"][owner.map_or(0, |n| match kinematics.rules()[n] {
         NodeRule::Free { first } => (twice - first) as usize,
-        NodeRule::Tied { .. } => 0,
+        NodeRule::Tied { .. } | NodeRule::Image { .. } => 0,
     })];
     Err(ModelError::PrescribedTwice { step: step.into(), component, node })
 }

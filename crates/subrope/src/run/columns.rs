@@ -115,7 +115,7 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
         out.extend([totals.contact_friction, totals.contact_stored, totals.interference]);
     }
     for contact in contacts::contacts(analysis) {
-        let ContactReport { touching, area, normal, friction, penetration, work, .. } = contact.report();
+        let ContactReport { touching, area, normal, friction, penetration, work, .. } = contacts::report(mesh, contact);
         out.extend([normal, friction, work, area, penetration, touching as f64]);
     }
     out

@@ -1,7 +1,7 @@
 //! What the contacts of a model tell: sums per pair, fields on the cells that touch.
 
 #[cfg(feature = "hdf5")]
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use serde::Serialize;
 pub use subrope_contact::contacts;
 #[cfg(feature = "hdf5")]
@@ -13,6 +13,7 @@ use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad9, quadrilateral};
 
 #[cfg(feature = "hdf5")]
 use crate::model::ContactCells;
+use crate::model::MeshModel;
 
 /// A pair of surfaces at the end of a run.
 #[derive(Clone, Debug, Serialize)]
@@ -37,10 +38,18 @@ pub struct PairSummary {
     pub penalty_mpa_per_mm: f64,
 }
 
+/// Sums and extremes of a contact over the whole length of a pair of strands; the points of a slice count once.
+pub fn report(mesh: &MeshModel, contact: &Contact) -> ContactReport {
+    let (one, layers) = (contact.report(), mesh.layers_per_strand());
+    let ContactReport { area, normal, friction, work, .. } = one;
+    let [area, normal, friction, work] = [area, normal, friction, work].map(|sum| layers * sum);
+    ContactReport { area, normal, friction, work, ..one }
+}
+
 /// One entry per pair.
-pub fn summaries(analysis: &Analysis) -> Vec<PairSummary> {
+pub fn summaries(mesh: &MeshModel, analysis: &Analysis) -> Vec<PairSummary> {
     let summary = |contact: &Contact| {
-        let ContactReport { touching, area, normal, friction, pressure, penetration, work } = contact.report();
+        let ContactReport { touching, area, normal, friction, pressure, penetration, work } = report(mesh, contact);
         PairSummary {
             name: contact.name().to_owned(),
             touching_points: touching,
@@ -90,14 +99,25 @@ pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[Cont
                 F::Slip | F::Gap => Vector3::new(state.slip, 0.0, 0.0),
             };
             let pair = faces_of(contact, cells, point.patch, state.place);
-            // Each side feels the other's opposite.
-            let signs = if kind == F::Traction { [1.0, -1.0] } else { [1.0, 1.0] };
-            for (face, sign) in pair.into_iter().zip(signs) {
-                faces.add(face, point.area, value * sign, kind == F::Slip);
+            // Each side feels the other's opposite, an image turned back to the strand that it is the image of.
+            let felt = if kind == F::Traction { turned_back(contact, state.place, analysis) * -value } else { value };
+            for (face, value) in pair.into_iter().zip([value, felt]) {
+                faces.add(face, point.area, value, kind == F::Slip);
             }
         }
     }
     faces.means()
+}
+
+#[cfg(feature = "hdf5")]
+/// From the image of a strand that a point touches back to the strand.
+fn turned_back(contact: &Contact, place: Option<Place>, analysis: &Analysis) -> Rotation3<f64> {
+    // Sixteen control points surround a patch, whose own layer begins at the sixth; a facet has only its corners.
+    let nodes = place.map_or(&[][..], |at| contact.primary().nodes(at.patch as usize));
+    let corner = nodes.get(if nodes.len() == 16 { 5 } else { 0 });
+    let kinematics = &analysis.model().kinematics;
+    let turn = corner.and_then(|&node| kinematics.turn_of_image(node as usize, analysis.coordinates()));
+    Rotation3::from_axis_angle(&Vector3::z_axis(), -turn.unwrap_or_default())
 }
 
 #[cfg(feature = "hdf5")]

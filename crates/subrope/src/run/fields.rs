@@ -267,12 +267,17 @@ fn tied_only(analysis: &Analysis) -> Vec<f64> {
     use subrope_fem::kinematics::NodeRule;
     let mut out = analysis.nodal_reactions();
     for (node, rule) in analysis.model().kinematics.rules().iter().enumerate() {
-        if let NodeRule::Free { first } = rule {
-            for k in 0..3 {
-                if !analysis.is_prescribed(*first as usize + k) {
-                    out[3 * node + k] = 0.0;
+        match rule {
+            NodeRule::Free { first } => {
+                // With what its images hand on.
+                for c in *first as usize..*first as usize + 3 {
+                    let held = analysis.is_prescribed(c);
+                    out[3 * node + c - *first as usize] = if held { analysis.reactions()[c] } else { 0.0 };
                 }
             }
+            // What acts on an image acts on its master.
+            NodeRule::Image { .. } => out[3 * node..3 * node + 3].fill(0.0),
+            NodeRule::Tied { .. } => {}
         }
     }
     out

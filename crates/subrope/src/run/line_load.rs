@@ -11,7 +11,7 @@ use subrope_fem::analysis::Analysis;
 use subrope_geometry::{CellKind, Strand, StrandAxis, rope, strand};
 use subrope_io::{Column, HistoryWriter, IoError};
 
-use super::{contacts, strands};
+use super::contacts;
 use crate::analytic::LaidStrands;
 use crate::model::{ContactCells, MeshModel, RopeModel};
 
@@ -235,7 +235,11 @@ impl ContactLine {
             normal_n_per_deformed_mm: per(middle(|s| s.normal), deformed),
             friction_n_per_mm: per(middle(|s| s.friction), length),
             friction_work_mj_per_mm: per(middle(|s| s.work), length),
-            share_of_thirds: [0, 1, 2].map(|third| per(sum(Some(third), |s| s.normal), all)),
+            share_of_thirds: match self.slices[..] {
+                // A layer that stands for all others.
+                [_] => [1.0 / 3.0; 3],
+                _ => [0, 1, 2].map(|third| per(sum(Some(third), |s| s.normal), all)),
+            },
         }
     }
 }
@@ -254,7 +258,10 @@ pub(super) fn analytic(model: &RopeModel) -> Option<AnalyticLineLoad> {
     let all = Layers::of(&model.mesh);
     let layers = rope.strands.first()?.layers;
     let displacement = model.analysis.displacement();
-    let levels = layers.div_ceil(3)..=2 * layers / 3;
+    let (strands, levels) = match model.mesh.slice {
+        Some(slice) => (slice.strands, 0..=1),
+        None => (all.len(), layers.div_ceil(3)..=2 * layers / 3),
+    };
     let cuts = |u| levels.clone().map(|level| Cut::new(&all, level, &model.mesh, u)).collect::<Vec<_>>();
     let (before, now) = (cuts(None), cuts(Some(displacement)));
     let mean_radius = |cuts: &[Cut]| cuts.iter().map(Cut::radius).sum::<f64>() / cuts.len() as f64;
@@ -267,9 +274,9 @@ pub(super) fn analytic(model: &RopeModel) -> Option<AnalyticLineLoad> {
     }
     let turn: f64 = now.windows(2).map(|pair| pair[0].turn(&pair[1])).sum();
     let lay_angle = (helix_radius * turn / advance).abs().atan();
-    let forces = strands(&model.mesh, &model.analysis);
+    let forces = super::strands(&model.mesh, &model.analysis);
     let strand_tension = forces.iter().map(|s| s.force_n).sum::<f64>() / forces.len() as f64 / lay_angle.cos();
-    let unit = LaidStrands::touching(all.len(), 1.0, lay_angle).ok()?;
+    let unit = LaidStrands::touching(strands, 1.0, lay_angle).ok()?;
     let tube_radius = helix_radius / unit.helix_radius;
     let laid = LaidStrands { helix_radius, tube_radius, ..unit };
     Some(AnalyticLineLoad {
@@ -293,7 +300,11 @@ struct Cut {
 impl Cut {
     fn new(strands: &[Layers<'_>], level: usize, mesh: &MeshModel, displacement: Option<&[f64]>) -> Self {
         let middles: Vec<_> = strands.iter().map(|s| s.middle(level, mesh, displacement)).collect();
-        let centre = middles.iter().sum::<Vector3<f64>>() / middles.len() as f64;
+        let mut centre = middles.iter().sum::<Vector3<f64>>() / middles.len() as f64;
+        if mesh.slice.is_some() {
+            // The other strands stand about the axis.
+            (centre.x, centre.y) = (0.0, 0.0);
+        }
         Self { centre, arms: middles.iter().map(|m| m - centre).collect() }
     }
 

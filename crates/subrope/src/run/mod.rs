@@ -23,7 +23,7 @@ pub use findings::{Findings, Mode, ModeFinding, PeakDensities, Zone};
 pub use line_load::{AnalyticLineLoad, ContactLine, LineLoadSummary, LineSlice, contact_lines};
 pub use sections::{SectionShape, section_shapes};
 pub use strands::{StrandSummary, strands};
-pub use summary::{Status, Summary};
+pub use summary::{Status, Summary, SymmetrySummary};
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

@@ -36,7 +36,10 @@ const CANCELLED: f64 = 1e-6;
 pub fn strands(mesh: &MeshModel, analysis: &Analysis) -> Vec<StrandSummary> {
     let Some(shape) = &mesh.rope else { return Vec::new() };
     let mut out = vec![StrandSummary::default(); shape.strands.len()];
-    add_forces(mesh, analysis, &mut out);
+    match mesh.slice {
+        Some(slice) => share_alike(slice.strands, analysis, &mut out),
+        None => add_forces(mesh, analysis, &mut out),
+    }
     let Some(solid) = analysis.model().contributions.iter().find_map(|c| c.fields()) else { return out };
     for (element, &index) in shape.strand_of_cell.iter().enumerate() {
         let strand = &mut out[index as usize];
@@ -47,7 +50,33 @@ pub fn strands(mesh: &MeshModel, analysis: &Analysis) -> Vec<StrandSummary> {
         strand.dissipated_transverse_midpoint_mj += energies.dissipated_mid[0];
         strand.dissipated_longitudinal_midpoint_mj += energies.dissipated_mid[1];
     }
+    out.iter_mut().for_each(|strand| strand.lengthen(mesh.layers_per_strand()));
     out
+}
+
+impl StrandSummary {
+    /// From a layer of a slice to the length of the rope.
+    fn lengthen(&mut self, layers: f64) {
+        for energy in [
+            &mut self.stored_mj,
+            &mut self.dissipated_transverse_mj,
+            &mut self.dissipated_longitudinal_mj,
+            &mut self.dissipated_transverse_midpoint_mj,
+            &mut self.dissipated_longitudinal_midpoint_mj,
+        ] {
+            *energy *= layers;
+        }
+    }
+}
+
+/// Equal strands have equal shares; they have no end about whose middle a strand could turn its own.
+fn share_alike(strands: usize, analysis: &Analysis, out: &mut [StrandSummary]) {
+    let (force, moment) = analysis.point_reaction(0);
+    let share = 1.0 / strands as f64;
+    for strand in out {
+        (strand.force_n, strand.torque_n_mm) = (share * force.z, share * moment.z);
+        strand.share_of_force = if force.z == 0.0 { 0.0 } else { share };
+    }
 }
 
 fn add_forces(mesh: &MeshModel, analysis: &Analysis, out: &mut [StrandSummary]) {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use subrope_fem::FemError;
 use subrope_fem::analysis::Phase;
+use subrope_fem::kinematics::NodeRule;
 
 use super::clock::Reading;
 use super::contacts::{self, PairSummary};
@@ -49,6 +50,9 @@ pub struct Summary {
     pub status: Status,
     /// Time reached in the scene \[s\].
     pub time_s: f64,
+    /// What the mesh stands for, where it is a slice of a rope.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<SymmetrySummary>,
     /// Motions and reactions of the reference points.
     pub reference_points: BTreeMap<String, PointSummary>,
     /// Energies.
@@ -90,6 +94,23 @@ pub struct Summary {
     pub version: &'static str,
     /// SHA-256 of the scene and its deck.
     pub scene_hash: String,
+}
+
+/// What a slice stands for. Forces, torques, energies and the sums of a pair are those of the whole rope, without ends.
+#[derive(Clone, Debug, Serialize)]
+pub struct SymmetrySummary {
+    /// "helical".
+    pub kind: &'static str,
+    /// Strands of the rope.
+    pub strands: usize,
+    /// Layers in its length.
+    pub layers: usize,
+    /// Height of a layer at rest.
+    pub height_mm: f64,
+    /// Its turn at rest.
+    pub turn_degrees: f64,
+    /// Force on the node that is held along z, and its tangential force: both balance and say how well.
+    pub held_reaction_n: [f64; 2],
 }
 
 /// A reference point at the end.
@@ -225,9 +246,10 @@ impl Summary {
             title: file.scene.title.clone(),
             status,
             time_s: analysis.time(),
+            symmetry: symmetry(model),
             reference_points: points(model),
             energies: energies(model),
-            contacts: contacts::summaries(analysis),
+            contacts: contacts::summaries(&model.mesh, analysis),
             line_loads: contact_lines(model).iter().map(ContactLine::summary).collect(),
             analytic_line_load: line_load::analytic(model),
             strands: strands::strands(&model.mesh, analysis),
@@ -299,6 +321,20 @@ fn number(value: f64) -> String {
 
 fn norm(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn symmetry(model: &RopeModel) -> Option<SymmetrySummary> {
+    let slice = model.mesh.slice?;
+    let NodeRule::Free { first } = model.analysis.model().kinematics.rules()[slice.held as usize] else { return None };
+    let held = &model.analysis.reactions()[first as usize..][..3];
+    Some(SymmetrySummary {
+        kind: "helical",
+        strands: slice.strands,
+        layers: slice.layers,
+        height_mm: slice.height,
+        turn_degrees: slice.angle.to_degrees(),
+        held_reaction_n: [held[2], held[1]],
+    })
 }
 
 fn points(model: &RopeModel) -> BTreeMap<String, PointSummary> {

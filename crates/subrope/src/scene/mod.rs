@@ -48,7 +48,7 @@ pub use law::{
 pub use output::{Field, Output, Precision};
 pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
-pub use rope::{Core, Rope, YarnSense, Yarns};
+pub use rope::{Core, Rope, Symmetry, YarnSense, Yarns};
 pub use sizing::Sizing;
 pub use solver::{LineSearch, Solver, Stabilisation};
 pub use step::{
@@ -130,6 +130,18 @@ impl Scene {
     #[must_use]
     pub fn length(&self) -> Option<f64> {
         self.strand.as_ref().map(|s| s.length).or(self.rope.as_ref().map(|r| r.length))
+    }
+
+    /// Whether one layer of one strand of a rope stands for all of it.
+    #[must_use]
+    pub fn is_slice(&self) -> bool {
+        self.rope.as_ref().is_some_and(Rope::is_slice)
+    }
+
+    /// The end whose reference point moves a slice.
+    #[must_use]
+    pub fn slice_end(&self) -> Option<&End> {
+        self.end.iter().find(|end| self.is_slice() && end.set().eq_ignore_ascii_case("END_B"))
     }
 
     /// Radius of a strand of the generated strand or rope \[mm\], given or by its sizing.

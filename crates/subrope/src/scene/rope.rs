@@ -66,12 +66,27 @@ pub struct Rope {
     /// Where z = 0 lies: in the "middle" of the rope or at its "bottom" (END_A).
     #[serde(default)]
     pub origin: Origin,
+    /// "none": all strands over the whole length. "helical": one layer of one strand, whose images are all others; for
+    /// tension and twist of END_B, without a core. There are no ends then: the rope is that far from them.
+    #[serde(default)]
+    pub symmetry: Symmetry,
     /// Division of every strand into hexahedra; `lines` is "axis".
     #[serde(default)]
     pub mesh: StrandMesh,
     /// What is known of its yarns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sizing: Option<Sizing>,
+}
+
+/// What of a rope is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Symmetry {
+    /// All of it.
+    #[default]
+    None,
+    /// One layer of one strand: everything else is its image under a screw.
+    Helical,
 }
 
 /// Winding of rope-yarns about the axis of their strand. Give either `surface_angle` or `pitch`.
@@ -122,6 +137,12 @@ impl Rope {
     #[must_use]
     pub fn is_sized(&self) -> bool {
         self.radius.is_none() || self.linear_density.is_some() || self.sizing.is_some()
+    }
+
+    /// Whether one layer of one strand stands for all.
+    #[must_use]
+    pub fn is_slice(&self) -> bool {
+        self.symmetry == Symmetry::Helical
     }
 
     /// Number of strands with the core.

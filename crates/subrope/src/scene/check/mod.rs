@@ -6,6 +6,7 @@ mod law;
 mod mesh;
 mod motion;
 mod sizing;
+mod slice;
 mod step;
 
 pub(crate) use law::check_law;
@@ -21,6 +22,7 @@ pub(super) fn check(scene: &Scene, document: &Document, names: Option<&DeckNames
     checker.law();
     checker.boundary();
     checker.contacts();
+    checker.slice();
     checker.steps();
     checker.problems
 }
