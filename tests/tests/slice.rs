@@ -383,6 +383,31 @@ fn all_solvers_give_the_same() {
     }
 }
 
+/// Every element, smoothing, method and section: the slice balances and pulls.
+#[test]
+fn all_elements_and_contacts_balance() {
+    let step = "[[step]]\nname = \"pull\"\nincrements = { initial = 0.01 }\ntension = { elongation = 0.02 }\n";
+    let text = changed(&sliced(&short_rope(step)), &[("tau_l = 1.0\n", "tau_l = 1.0\nmu_t = 0.2\nmu_l = 0.1\n")]);
+    let points = "points = [8, 2]";
+    for (from, to) in [
+        ("[law]", "[element]\nformulation = \"hex27\"\n[law]"),
+        ("[law]", "[element]\nformulation = \"hex8_mean_elongation\"\n[law]"),
+        (points, "points = [8, 2]\nsmoothing = \"none\""),
+        (points, "points = [8, 2]\nmethod = \"augmented\""),
+        ("lay_angle = 20.0", "lay_angle = 20.0\ncompaction = 1.0"),
+        ("lay_angle = 20.0", "lay_angle = 20.0\nstrands = 4"),
+    ] {
+        let (_folder, outcome) = run_with_files(&changed(&text, &[(from, to)]));
+        let summary = outcome.summary;
+        let (force, held) = (summary.reference_points["END_B"].force_n[2], summary.symmetry.unwrap().held_reaction_n);
+        let error = summary.energies.energy_error;
+        println!("{to:?}: {force} N, held {held:?} N, energy error {error:e}");
+        assert!(force > 100.0 && summary.contacts[0].normal_force_n > 1.0);
+        assert!(held.iter().all(|r| r.abs() < 1e-7 * force), "{held:?}");
+        assert!(error.abs() < 5e-3, "{error:e}");
+    }
+}
+
 /// A left-hand rope is the mirror of a right-hand one.
 #[test]
 fn hands_are_mirrors() {
@@ -569,18 +594,18 @@ fn watch(text: &str) -> (Vec<State>, f64) {
     (watch.states, seconds)
 }
 
-/// Runs three lay lengths of the sub-rope, and the slice along the path of elongation and twist of the middle one. At
-/// its ends the strands of the rope slide on their radii.
-fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
+/// Runs three lay lengths of the sub-rope, and the slice along the path of elongation and twist of the middle one. The
+/// strands overlap at rest by 3 % of their radius: a long rope of strands that just touch takes hundreds of small increments.
+fn compare(mesh: &str, points: &str, length: f64, elongation: f64) -> Vec<f64> {
     let text = changed(
         &scene_file("sub_rope_tension.toml"),
         &[
             ("length = 60.0 ", &format!("length = {length:?} ")),
             ("core = 4\nrings = 2\nlayers = 50", mesh),
             ("elongation = 0.05", &format!("elongation = {elongation:?}")),
-            ("initial = 0.0015", "initial = 0.0005"),
-            ("name = \"END_A\"", "name = \"END_A\"\nkind = \"sliding\""),
-            ("name = \"END_B\"", "name = \"END_B\"\nkind = \"sliding\""),
+            ("points = [4, 2]", points),
+            ("initial = 0.0015", "initial = 0.02"),
+            ("lay_angle = 20.0", "gap = -0.03\nlay_angle = 20.0"),
         ],
     );
     let (whole, slow) = watch(&text);
@@ -592,7 +617,7 @@ fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
         format!("elongation = {}\ntwist = {}", path(&|s| s.elongation), path(&|s| (s.twist * length).to_degrees()));
     let text = changed(
         &sliced(&text),
-        &[(&format!("elongation = {elongation:?}"), &motion), ("initial = 0.0005, maximum = 0.1", "initial = 1.0")],
+        &[(&format!("elongation = {elongation:?}"), &motion), ("initial = 0.02, maximum = 0.1", "initial = 1.0")],
     );
     let (slice, fast) = watch(&text);
     let (a, b) = (whole.last().unwrap(), slice.last().unwrap());
@@ -606,16 +631,16 @@ fn compare(mesh: &str, length: f64, elongation: f64) -> Vec<f64> {
 
 /// Three lay lengths of the sub-rope against the slice.
 #[test]
-#[ignore = "half an hour"]
+#[ignore = "a quarter of an hour"]
 fn a_slice_is_the_middle_of_a_sub_rope() {
-    let off = compare("core = 4\nrings = 2\nlayers = 141", 168.4, 0.02);
+    let off = compare("core = 4\nrings = 2\nlayers = 141", "points = [4, 2]", 168.4, 0.02);
     assert!(off.iter().all(|x| x.abs() < 0.01), "{off:?}");
 }
 
 /// The same on a coarse mesh.
 #[test]
-#[ignore = "some minutes"]
+#[ignore = "a minute or two"]
 fn a_slice_is_the_middle_of_a_coarse_sub_rope() {
-    let off = compare("core = 2\nrings = 2\nlayers = 90", 168.4, 0.02);
-    assert!(off.iter().all(|x| x.abs() < 0.02), "{off:?}");
+    let off = compare("core = 2\nrings = 2\nlayers = 90", "points = [8, 2]", 168.4, 0.02);
+    assert!(off.iter().all(|x| x.abs() < 0.005), "{off:?}");
 }
