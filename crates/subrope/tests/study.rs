@@ -189,6 +189,7 @@ fn a_study_can_be_interrupted() {
         .current_dir(folder.path())
         .process_group(0)
         .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
         .spawn()
         .unwrap();
     let history = folder.path().join("out/study/members/02_mean_level_2/run_1/history.csv");

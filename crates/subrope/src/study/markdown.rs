@@ -13,6 +13,7 @@ pub(super) fn text(report: &Report) -> String {
     out.push('\n');
     out += &members(report);
     out += &failures(report);
+    out += &unstable(report);
     out.push('\n');
     out += &orders(report);
     out.push('\n');
@@ -98,6 +99,20 @@ fn failures(report: &Report) -> String {
         let _ = write!(out, "\n- **{}** failed: {}", member.name, member.status.reason());
     }
     if out.is_empty() { out } else { out + "\n" }
+}
+
+/// Members that went along an unstable branch: others may have left it, and then differ by more than the mesh.
+fn unstable(report: &Report) -> String {
+    let count = |m: &MemberReport| m.counts.map_or(0, |c| c.unstable_increments);
+    let told: Vec<_> =
+        report.members.iter().filter(|m| count(m) > 0).map(|m| format!("{} ({})", m.name, count(m))).collect();
+    if told.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\nIncrements on an unstable branch (negative pivots), which other members may have left: {}.\n",
+        told.join("; ")
+    )
 }
 
 /// References and observed orders.

@@ -1,7 +1,7 @@
 //! From runs to a report.
 
 use super::file::{Clock, Reference, ReferenceKind, StudyFile};
-use super::front::{cheapest, cost_at, pareto};
+use super::front::{Bound, Ratio, cheapest, cost_at, pareto};
 use super::machine::Machine;
 use super::members::Member;
 use super::order::{observed, richardson};
@@ -96,6 +96,7 @@ fn counts(sample: &Sample) -> Counts {
         increments: sample.count("/counts/increments"),
         iterations: sample.count("/counts/iterations"),
         cutbacks: sample.count("/counts/cutbacks"),
+        unstable_increments: sample.count("/counts/unstable_increments"),
     }
 }
 
@@ -257,7 +258,10 @@ fn pair(curves: &[Vec<(f64, f64)>], first: usize, second: usize, target: f64) ->
     let ratio = over(first, second, common_error)?;
     let (slower, faster) = if ratio.value < 1.0 { (second, first) } else { (first, second) };
     let common = over(slower, faster, common_error)?;
-    Some(Pair { slower, faster, common, common_error, at_target: over(slower, faster, target) })
+    // That the slower one takes at least a part of the time of the faster one tells nothing.
+    let empty = |r: &Ratio| r.bound == Bound::AtLeast && r.value < 1.0 && r.estimate.is_none();
+    let at_target = over(slower, faster, target).filter(|r| !empty(r));
+    Some(Pair { slower, faster, common, common_error, at_target })
 }
 
 /// The cheapest member that is good enough in all quantities.
@@ -272,7 +276,6 @@ fn cheapest_for_all(report: &Report) -> Option<Cheapest> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Bound;
 
     #[test]
     fn pairs_are_compared_at_an_error_that_both_reach() {

@@ -130,6 +130,8 @@ pub struct Counts {
     pub iterations: u64,
     /// Failed attempts.
     pub cutbacks: u64,
+    /// Converged increments whose tangent has negative pivots: members may then follow different branches.
+    pub unstable_increments: u64,
 }
 
 /// A member.

@@ -19,6 +19,7 @@ pub(super) fn csv(report: &Report) -> String {
         "increments",
         "iterations",
         "cutbacks",
+        "unstable_increments",
         "runs",
         "time_min [s]",
         "time_median [s]",
@@ -57,6 +58,7 @@ fn row(member: &MemberReport, keys: &BTreeSet<&str>) -> Vec<String> {
         count(|c| c.increments),
         count(|c| c.iterations),
         count(|c| c.cutbacks),
+        count(|c| c.unstable_increments),
     ]);
     let time = member.time.as_ref();
     out.push(time.map_or(0, |t| t.all.len()).to_string());
