@@ -51,8 +51,8 @@ fn frame(strand: u32, layer: usize) -> Matrix3<f64> {
     Matrix3::from_columns(&[e1, e2, e1.cross(&e2)])
 }
 
-#[test]
-fn three_strands_carry_what_calculix_says() {
+/// Force at 3 % in so many equal increments.
+fn pulled(increments: usize) -> f64 {
     let RopeMesh { mesh, strand_of_cell, .. } = rope();
     assert_eq!(mesh.cell_count(), 3600);
     // Cells of a strand: layer after layer.
@@ -77,9 +77,21 @@ fn three_strands_carry_what_calculix_says() {
     let sections = ends.map(|(name, z)| rigid(name, Vector3::new(0.0, 0.0, z), &mesh.node_sets[name])).to_vec();
     let options = NewtonOptions { force_tolerance: 1e-8, ..NewtonOptions::default() };
     let mut problem = Problem::of(&mesh, contributions, sections, options).unwrap();
-    let step = problem.step(Increments::Fixed(4)).hold(0, &[]).hold(1, &[]).point(1, 2, 0.03 * LENGTH).build();
+    let step = problem.step(Increments::Fixed(increments)).hold(0, &[]).hold(1, &[]).point(1, 2, 0.03 * LENGTH).build();
     let rows = problem.run(&step).unwrap();
     let force = rows.last().unwrap().reaction[1][0].z;
     println!("{force} N, iterations {:?}", rows.iter().map(|r| r.record.iterations).collect::<Vec<_>>());
-    close("force", force, 516.1, 0.015);
+    force
+}
+
+#[test]
+fn three_strands_carry_what_calculix_says() {
+    close("force", pulled(4), 516.1, 0.015);
+}
+
+/// The work of the race against other programs: the same ten increments.
+#[test]
+#[ignore = "a race, not a check"]
+fn three_strands_in_ten_increments() {
+    close("force", pulled(10), 516.1, 0.015);
 }
