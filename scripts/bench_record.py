@@ -133,11 +133,11 @@ def duration(ns):
 def draw(path):
     lines = history()
     names = sorted({name for line in lines for name in line["entries"]})
-    row, left, width = 46, 330, 420
+    row, left, width = 46, 370, 420
     out = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + width + 110}" height="{row * len(names) + 60}" '
         'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>',
-        f'<text x="10" y="22" font-size="14">Cost of every figure over {len(lines)} records, relative to their median '
+        f'<text x="10" y="22" font-size="14">Cost of every figure, records: {len(lines)}, relative to their median '
         '(band: noise)</text>',
     ]
     for number, name in enumerate(names):
