@@ -29,8 +29,8 @@ PITCH, LAYERS = 60.0, 40
 FAMILIES = {
     "length": [(f"{n} pitches", {"length": n * PITCH, "layers": n * LAYERS}) for n in (1, 2, 4, 8, 16)],
     "section": [
-        (f"{4 * core} faces around", {"core": core, "rings": core, "layers": 20 * core, "points": f"[{16 // core}, 2]"})
-        for core in (1, 2, 3, 4)
+        (f"{core} x {core} core, {rings} rings", {"core": core, "rings": rings, "layers": layers, "points": points})
+        for core, rings, layers, points in ((2, 1, 30, "[8, 3]"), (2, 2, 40, "[8, 2]"), (4, 2, 50, "[4, 2]"), (4, 4, 80, "[4, 2]"))
     ],
     "strands": [(f"{n} strands", {"strands": n}) for n in (2, 3, 4, 5, 6)],
 }
