@@ -56,7 +56,7 @@ pub struct SystemSize {
     pub factor_flops: f64,
     /// Ordering.
     pub ordering: String,
-    /// Whether the matrix is symmetric (LDL^T) or not (LU).
+    /// Whether the matrix is symmetric.
     pub symmetric: bool,
 }
 

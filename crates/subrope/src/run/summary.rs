@@ -375,7 +375,6 @@ fn energies(model: &RopeModel) -> EnergySummary {
 fn sizes(model: &RopeModel) -> SizeSummary {
     let system = model.analysis.system();
     let report = system.map(subrope_fem::System::analysis);
-    let fields = model.analysis.model().contributions.iter().find_map(|c| c.fields());
     SizeSummary {
         elements: model.mesh.mesh.cell_count(),
         nodes: model.mesh.mesh.point_count(),
@@ -385,7 +384,7 @@ fn sizes(model: &RopeModel) -> SizeSummary {
         factor_flops: report.map_or(0.0, |r| r.fill.flops),
         ordering: report.map_or_else(String::new, |r| r.ordering.name().to_string()),
         symmetric: system.is_none_or(subrope_fem::System::is_symmetric),
-        state_bytes_per_point: fields.map_or(0, |f| f.state_bytes_per_point()),
+        state_bytes_per_point: model.state_bytes_per_point(),
         threads: model.analysis.threads(),
     }
 }
