@@ -5,11 +5,13 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pulp::{Simd, WithSimd};
 use subrope_benches::{block, bundle, displacement, gradients, model, orthotropic, strand};
 use subrope_fem::linear::SolverOptions;
-use subrope_fem::solid::{Full, MeanElongation, MeanVolume};
+use subrope_fem::solid::{Full, MeanElongation, MeanVolume, Wide};
 use subrope_fem::{Configuration, Contribution, Evaluation, Product, REFERENCE_TEMPERATURE, Request, Sink, System};
-use subrope_material::{Law, Request as LawRequest, Response};
+use subrope_material::lanes::{Lanes, MAX_LANES};
+use subrope_material::{LaneInput, LaneResponse, Law, PointInput, Request as LawRequest};
 
 /// Takes elements and forgets them: measures the elements alone.
 struct Nowhere(f64);
@@ -50,6 +52,46 @@ fn calibration(c: &mut Criterion) {
     group.finish();
 }
 
+/// The tangent at many points, as the elements ask for it: in all lanes of the processor.
+struct Points<'a, L> {
+    law: &'a L,
+    inputs: &'a [PointInput],
+    old: &'a [f64],
+    new: &'a mut [f64],
+}
+
+impl<L: Law> WithSimd for Points<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let witness = Wide::new(simd, 0.0);
+        let mut out = LaneResponse::zero(witness);
+        let mut done = true;
+        for points in self.inputs.chunks_exact(S::F64_LANES) {
+            let entry = |i, j| witness.from_fn(|lane| points[lane].displacement_gradient[(i, j)]);
+            let input = LaneInput {
+                points: points.len(),
+                gradient: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+                mean_elongation: None,
+                time_increment: 1.0,
+                temperature: REFERENCE_TEMPERATURE,
+            };
+            let states = ..points.len() * self.law.state_len();
+            let answer = self.law.evaluate_lanes(
+                &input,
+                &self.old[states],
+                &mut self.new[states],
+                LawRequest::Tangent,
+                &mut out,
+            );
+            done &= answer.is_ok();
+            black_box(&mut out);
+        }
+        done
+    }
+}
+
 fn laws(c: &mut Criterion) {
     let inputs = gradients(1024, 0.05);
     let mut group = c.benchmark_group("law with tangent");
@@ -58,15 +100,12 @@ fn laws(c: &mut Criterion) {
         [("sticking", bundle(1e6, 0.0)), ("sliding", bundle(0.1, 0.0)), ("sliding, pressure", bundle(0.1, 0.2))]
     {
         let Ok(law) = law else { continue };
-        let old = vec![0.0; law.state_len()];
+        let old = vec![0.0; MAX_LANES * law.state_len()];
         let mut new = old.clone();
-        let mut out = Response::default();
         group.bench_function(name, |bench| {
             bench.iter(|| {
-                for input in &inputs {
-                    let done = law.evaluate(black_box(input), &old, &mut new, LawRequest::Tangent, &mut out);
-                    black_box((&mut out, done.is_ok()));
-                }
+                let points = Points { law: &law, inputs: black_box(&inputs), old: &old, new: &mut new };
+                black_box(pulp::Arch::new().dispatch(points))
             });
         });
     }

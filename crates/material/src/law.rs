@@ -7,6 +7,8 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
+use crate::lanes::{Lanes, MAX_LANES};
+use crate::strain::rows;
 use crate::{ConjugateForces, LawError};
 
 /// What a law is asked at one integration point. Everything is in the material frame.
@@ -88,6 +90,133 @@ pub struct Response {
     pub dissipated_mid: [f64; 2],
 }
 
+/// [`PointInput`] of several points, one in each lane; lanes without a point repeat the last one.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneInput<V> {
+    /// How many lanes hold a point of their own: at least one.
+    pub points: usize,
+    /// `gradient[i][j] = H_ij` \[-\].
+    pub gradient: [[V; 3]; 3],
+    /// As in [`PointInput`].
+    pub mean_elongation: Option<V>,
+    /// Length of the time increment \[s\].
+    pub time_increment: f64,
+    /// Temperature \[K\].
+    pub temperature: f64,
+}
+
+impl LaneInput<f64> {
+    /// One point.
+    #[inline(always)]
+    pub(crate) fn of(input: &PointInput) -> Self {
+        Self {
+            points: 1,
+            gradient: rows(&input.displacement_gradient),
+            mean_elongation: input.mean_elongation,
+            time_increment: input.time_increment,
+            temperature: input.temperature,
+        }
+    }
+}
+
+/// [`FibreResponse`] of several points.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneFibreResponse<V> {
+    /// `dW/de` \[MPa\].
+    pub fibre_stress: V,
+    /// `d2W/de2` \[MPa\].
+    pub fibre_stiffness: V,
+    /// `dS/de` \[MPa\], Mandel.
+    pub stress_by_elongation: [V; 6],
+    /// `d(dW/de)/dE` \[MPa\], Mandel.
+    pub fibre_stress_by_strain: [V; 6],
+}
+
+/// [`Response`] of several points.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneResponse<V> {
+    /// `S` \[MPa\], Mandel.
+    pub second_piola: [V; 6],
+    /// Columns of `dS/dE` \[MPa\], Mandel. Written when asked for.
+    pub tangent: [[V; 6]; 6],
+    /// Written when a mean elongation is given.
+    pub fibre: LaneFibreResponse<V>,
+    /// Stored energy \[mJ/mm^3\].
+    pub stored_energy: V,
+    /// Incremental potential \[mJ/mm^3\], if there is one.
+    pub incremental_potential: Option<V>,
+    /// Dissipated in this increment by the two sliding modes \[mJ/mm^3\].
+    pub dissipated_mid: [V; 2],
+}
+
+impl<V: Lanes> LaneResponse<V> {
+    /// All zero.
+    #[must_use]
+    #[inline(always)]
+    pub fn zero(witness: V) -> Self {
+        let zero = witness.splat(0.0);
+        Self {
+            second_piola: [zero; 6],
+            tangent: [[zero; 6]; 6],
+            fibre: LaneFibreResponse {
+                fibre_stress: zero,
+                fibre_stiffness: zero,
+                stress_by_elongation: [zero; 6],
+                fibre_stress_by_strain: [zero; 6],
+            },
+            stored_energy: zero,
+            incremental_potential: None,
+            dissipated_mid: [zero; 2],
+        }
+    }
+
+    /// From the responses of single points, the last repeated.
+    fn gather(witness: V, of: &[Response], out: &mut Self) {
+        let last = of.len() - 1;
+        let lanes = |number: &dyn Fn(&Response) -> f64| witness.from_fn(|lane| number(&of[lane.min(last)]));
+        out.second_piola = std::array::from_fn(|i| lanes(&|r| r.second_piola[i]));
+        out.tangent = std::array::from_fn(|j| std::array::from_fn(|i| lanes(&|r| r.tangent[(i, j)])));
+        out.fibre = LaneFibreResponse {
+            fibre_stress: lanes(&|r| r.fibre.fibre_stress),
+            fibre_stiffness: lanes(&|r| r.fibre.fibre_stiffness),
+            stress_by_elongation: std::array::from_fn(|i| lanes(&|r| r.fibre.stress_by_elongation[i])),
+            fibre_stress_by_strain: std::array::from_fn(|i| lanes(&|r| r.fibre.fibre_stress_by_strain[i])),
+        };
+        out.stored_energy = lanes(&|r| r.stored_energy);
+        let potential = of.iter().all(|r| r.incremental_potential.is_some());
+        out.incremental_potential = potential.then(|| lanes(&|r| r.incremental_potential.unwrap_or(0.0)));
+        out.dissipated_mid = [0, 1].map(|i| lanes(&|r| r.dissipated_mid[i]));
+    }
+}
+
+impl LaneResponse<f64> {
+    /// As the response of a point; its tangent stays as it is when none was asked for.
+    pub(crate) fn write_to(&self, out: &mut Response, request: Request) {
+        out.second_piola = self.second_piola.into();
+        if request == Request::Tangent {
+            out.tangent.as_mut_slice().copy_from_slice(self.tangent.as_flattened());
+        }
+        out.fibre = FibreResponse {
+            fibre_stress: self.fibre.fibre_stress,
+            fibre_stiffness: self.fibre.fibre_stiffness,
+            stress_by_elongation: self.fibre.stress_by_elongation.into(),
+            fibre_stress_by_strain: self.fibre.fibre_stress_by_strain.into(),
+        };
+        out.stored_energy = self.stored_energy;
+        out.incremental_potential = self.incremental_potential;
+        out.dissipated_mid = self.dissipated_mid;
+    }
+}
+
+/// The first lane without an answer, and why it has none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaneFailure {
+    /// Lane.
+    pub lane: usize,
+    /// Why.
+    pub source: LawError,
+}
+
 /// What a state variable means, so that output needs no knowledge of the law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StateKind {
@@ -162,6 +291,55 @@ pub trait Law: Send + Sync + std::fmt::Debug {
         request: Request,
         out: &mut Response,
     ) -> Result<(), LawError>;
+
+    /// Answers at several points, whose states lie one after the other in `old` and `new`. A law that is not written for
+    /// lanes is asked point by point.
+    ///
+    /// # Errors
+    /// [`LaneFailure`] with what [`Law::evaluate`] says of the first point that fails.
+    #[inline]
+    fn evaluate_lanes<V: Lanes>(
+        &self,
+        input: &LaneInput<V>,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut LaneResponse<V>,
+    ) -> Result<(), LaneFailure>
+    where
+        Self: Sized,
+    {
+        each_lane(self, input, old, new, request, out)
+    }
+}
+
+/// [`Law::evaluate_lanes`] by [`Law::evaluate`] in each lane.
+#[inline(never)]
+pub(crate) fn each_lane<L: Law, V: Lanes>(
+    law: &L,
+    input: &LaneInput<V>,
+    old: &[f64],
+    new: &mut [f64],
+    request: Request,
+    out: &mut LaneResponse<V>,
+) -> Result<(), LaneFailure> {
+    let n = law.state_len();
+    let gradient = input.gradient.map(|row| row.map(V::to_array));
+    let elongation = input.mean_elongation.map(V::to_array);
+    let mut responses: [Response; MAX_LANES] = std::array::from_fn(|_| Response::default());
+    for (lane, response) in responses[..input.points].iter_mut().enumerate() {
+        let point = PointInput {
+            displacement_gradient: Matrix3::from_fn(|i, j| gradient[i][j][lane]),
+            mean_elongation: elongation.map(|lanes| lanes[lane]),
+            time_increment: input.time_increment,
+            temperature: input.temperature,
+        };
+        let state = lane * n..(lane + 1) * n;
+        law.evaluate(&point, &old[state.clone()], &mut new[state], request, response)
+            .map_err(|source| LaneFailure { lane, source })?;
+    }
+    LaneResponse::gather(input.gradient[0][0], &responses[..input.points], out);
+    Ok(())
 }
 
 impl Law for Box<dyn Law> {

@@ -12,6 +12,7 @@ mod bundle;
 pub mod driver;
 mod elastic;
 mod error;
+pub mod lanes;
 mod law;
 pub mod mandel;
 mod rest;
@@ -24,6 +25,9 @@ pub use bundle::{
 };
 pub use elastic::{CompressibleNeoHooke, EngineeringConstants, FibreNeoHooke, IsochoricNeoHooke, StVenantKirchhoff};
 pub use error::LawError;
-pub use law::{FibreResponse, Law, PointInput, Request, Response, StateKind, StateVariable};
+pub use law::{
+    FibreResponse, LaneFailure, LaneFibreResponse, LaneInput, LaneResponse, Law, PointInput, Request, Response,
+    StateKind, StateVariable,
+};
 pub use rest::transverse_modulus;
 pub use strain::StrainModes;

@@ -1,17 +1,22 @@
 //! A block of equal bricks with one law: geometry formed once, states, evaluation in batches.
 
 use nalgebra::{Matrix3, Vector3};
+use pulp::{Simd, WithSimd};
 use subrope_geometry::Hexahedron;
+use subrope_material::lanes::MAX_LANES;
 use subrope_material::{Law, StateKind};
 
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
-use super::kernel::{NodeVector, PointGeometry};
+use super::kernel::{NodeVector, PointGeometry, mirror};
 use super::{ElementEnergies, SolidFields};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::{FemError, parallel};
 
-/// Elements evaluated before their results are scattered, in index order: sums do not depend on threads.
-const BATCH: usize = 64;
+/// Elements evaluated before their results are scattered, in index order: sums do not depend on threads. Few where one
+/// thread works, so that their matrices are still in the nearest cache.
+const BATCH: usize = 4;
+/// The same where threads share the work.
+const SHARED_BATCH: usize = 64;
 
 /// What a block is made from.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +86,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
             points_per_element: rule.len(),
             committed: vec![0.0; states],
             trial: vec![0.0; states],
-            results: vec![ElementResult::zero(); BATCH.min(count)],
+            results: vec![ElementResult::zero(0); SHARED_BATCH.min(count)],
             energies: vec![ElementEnergies::default(); count],
             trial_energies: vec![ElementEnergies::default(); count],
             formulation: std::marker::PhantomData,
@@ -150,30 +155,18 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         }
     }
 
+    /// What an element is evaluated from.
     #[inline(always)]
-    fn element<const SYMMETRIC: bool>(
-        &self,
-        element: usize,
-        configuration: &Configuration<'_>,
-        request: Request,
-        new: &mut [f64],
-        out: &mut ElementResult<N>,
-    ) {
-        out.force = [[0.0; N]; 3];
-        out.energies = Energies::default();
-        if request == Request::Tangent {
-            out.stiffness = [[[[0.0; N]; 3]; N]; 3];
-        }
-        let input = ElementInput {
+    fn input(&self, element: usize, at: &Configuration<'_>, request: Request) -> ElementInput<'_, N, L> {
+        ElementInput {
             law: &self.law,
             points: self.element_points(element),
-            displacement: self.gather(element, configuration.displacement),
+            displacement: self.gather(element, at.displacement),
             old: self.element_state(element),
-            time_increment: configuration.time_increment,
-            temperature: configuration.temperature,
+            time_increment: at.time_increment,
+            temperature: at.temperature,
             request,
-        };
-        out.failure = F::evaluate::<L, SYMMETRIC>(&input, new, out).err();
+        }
     }
 
     fn elements(
@@ -214,20 +207,28 @@ struct Run<'a, const N: usize, L, F> {
     out: &'a mut [ElementResult<N>],
 }
 
-impl<const N: usize, L: Law, F: Formulation<N>> pulp::NullaryFnOnce for Run<'_, N, L, F> {
+impl<const N: usize, L: Law, F: Formulation<N>> WithSimd for Run<'_, N, L, F> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { block, first, configuration, request, trial, out } = self;
         let stride = block.stride();
         let symmetric = block.law.is_symmetric();
+        let mut product = [[[0.0; N]; 3]; MAX_LANES];
         for (i, result) in out.iter_mut().enumerate() {
             let new = &mut trial[i * stride..(i + 1) * stride];
-            if symmetric {
-                block.element::<true>(first + i, configuration, request, new, result);
+            let input = block.input(first + i, configuration, request);
+            result.force = [[0.0; N]; 3];
+            result.energies = Energies::default();
+            let outcome = if symmetric {
+                F::evaluate::<L, S, true>(simd, &input, new, &mut product, result)
             } else {
-                block.element::<false>(first + i, configuration, request, new, result);
+                F::evaluate::<L, S, false>(simd, &input, new, &mut product, result)
+            };
+            result.failure = outcome.err();
+            if symmetric && request == Request::Tangent {
+                mirror(&mut result.stiffness);
             }
         }
     }
@@ -301,8 +302,9 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         let stride = self.stride();
         let mut energies = Energies::default();
         let mut first = 0;
+        let batch = if configuration.parallel { SHARED_BATCH } else { BATCH };
         while first < self.nodes.len() {
-            let count = work.results.len().min(self.nodes.len() - first);
+            let count = batch.min(self.nodes.len() - first);
             let trial = &mut work.trial[first * stride..(first + count) * stride];
             let results = &mut work.results[..count];
             self.batch(first, configuration, request, Work { trial, results });

@@ -3,9 +3,15 @@
 mod block;
 mod formulation;
 mod kernel;
+mod mean_elongation;
+mod mean_volume;
 mod output;
+mod wide;
 
 pub use block::{SolidBlock, SolidMesh};
-pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume};
-pub use kernel::{NodeMatrix, NodeVector, PointGeometry};
+pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full};
+pub use kernel::{NodeMatrix, NodeVector, PointGeometry, PointProducts};
+pub use mean_elongation::MeanElongation;
+pub use mean_volume::MeanVolume;
 pub use output::{ElementEnergies, PointSample, SolidFields};
+pub use wide::{Wide, WideMask};

@@ -1,11 +1,14 @@
 //! What a solid block tells about its integration points at the committed state.
 
+use std::marker::PhantomData;
+
 use nalgebra::Matrix3;
-use subrope_material::{Law, StateVariable, StrainModes};
+use pulp::{Simd, WithSimd};
+use subrope_material::lanes::MAX_LANES;
+use subrope_material::{Law, StateVariable, StrainModes, mandel};
 
 use super::SolidBlock;
-use super::formulation::{ElementInput, ElementResult, Formulation};
-use super::kernel;
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
 use crate::FemError;
 use crate::contribution::{Energies, Request};
 
@@ -129,25 +132,44 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
             temperature: crate::REFERENCE_TEMPERATURE,
             request: Request::Residual,
         };
-        let mut result = Box::new(ElementResult::zero());
+        let mut result = Box::new(ElementResult::zero(points.len()));
         let mut new = vec![0.0; points.len() * n];
-        F::evaluate::<L, true>(&input, &mut new, &mut result).map_err(|f| self.failure(element, f))?;
+        let evaluation = Evaluation { input: &input, new: &mut new, out: &mut result, formulation: PhantomData::<F> };
+        pulp::Arch::new().dispatch(evaluation).map_err(|f| self.failure(element, f))?;
         for (q, point) in points.iter().enumerate() {
             let hr = input.gradient(q);
             let fr = point.frame + hr;
             let jacobian = fr.determinant() * point.frame.determinant();
-            let stress = kernel::tensor(&result.second_piola[q]);
+            let stress = mandel::to_matrix(&result.second_piola[q]);
             let sample = PointSample {
                 volume: point.volume,
                 frame: point.frame,
                 deformation_gradient: fr * point.frame.transpose(),
                 cauchy_stress: fr * stress * fr.transpose() / jacobian,
                 modes: StrainModes::from_displacement_gradient(&point.frame.tr_mul(&hr))
-                    .map_err(|e| self.failure(element, super::ElementFailure::Law(q, e)))?,
+                    .map_err(|e| self.failure(element, ElementFailure::Law(q, e)))?,
                 state: self.state(element, q),
             };
             visit(q, &sample);
         }
         Ok(())
+    }
+}
+
+/// One element outside of an assembly.
+struct Evaluation<'a, const N: usize, L, F> {
+    input: &'a ElementInput<'a, N, L>,
+    new: &'a mut [f64],
+    out: &'a mut ElementResult<N>,
+    formulation: PhantomData<F>,
+}
+
+impl<const N: usize, L: Law, F: Formulation<N>> WithSimd for Evaluation<'_, N, L, F> {
+    type Output = Result<(), ElementFailure>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut product = [[[0.0; N]; 3]; MAX_LANES];
+        F::evaluate::<L, S, true>(simd, self.input, self.new, &mut product, self.out)
     }
 }

@@ -1,117 +1,122 @@
 //! The axial energy `W_A = W_e(u) + W_c(z)`, `z = I_comp + nu u`, `u` the fibre elongation.
 
 use super::parameters::{BundleParameters, Compaction};
-use crate::LawError;
+use crate::lanes::Lanes;
 
 /// An energy of one variable with its two derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Potential {
-    pub(crate) energy: f64,
-    pub(crate) slope: f64,
-    pub(crate) curvature: f64,
+struct Potential<V> {
+    energy: V,
+    slope: V,
+    curvature: V,
 }
 
 /// `W_A` with its derivatives by elongation `u` and compaction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct AxialResponse {
-    pub(crate) energy: f64,
+pub(crate) struct AxialResponse<V: Lanes> {
+    /// Where the section is not locked up.
+    pub(crate) valid: V::Mask,
+    pub(crate) energy: V,
     /// `W_,e = W_e' + nu W_c'`.
-    pub(crate) by_elongation: f64,
+    pub(crate) by_elongation: V,
     /// `W_,c = W_c'`.
-    pub(crate) by_compaction: f64,
-    pub(crate) elongation_stiffness: f64,
-    pub(crate) coupling: f64,
-    pub(crate) compaction_stiffness: f64,
+    pub(crate) by_compaction: V,
+    pub(crate) elongation_stiffness: V,
+    pub(crate) coupling: V,
+    pub(crate) compaction_stiffness: V,
     /// `p = max(0, -W_c')`.
-    pub(crate) pressure: f64,
+    pub(crate) pressure: V,
     /// `dp/dI_comp`.
-    pub(crate) pressure_by_compaction: f64,
+    pub(crate) pressure_by_compaction: V,
     /// `dp/du`.
-    pub(crate) pressure_by_elongation: f64,
+    pub(crate) pressure_by_elongation: V,
 }
 
-impl AxialResponse {
-    /// # Errors
-    /// [`LawError::LockedUp`].
-    #[inline]
-    pub(crate) fn new(parameters: &BundleParameters, elongation: f64, compaction: f64) -> Result<Self, LawError> {
+impl<V: Lanes> AxialResponse<V> {
+    #[inline(always)]
+    pub(crate) fn new(parameters: &BundleParameters, elongation: V, compaction: V) -> Self {
         let nu = parameters.nu;
+        let z = compaction + elongation * nu;
         let fibre = fibre_energy(parameters, elongation);
-        let section = compaction_energy(parameters, compaction + nu * elongation)?;
-        let pressed = if section.slope < 0.0 { -section.curvature } else { 0.0 };
-        Ok(Self {
+        let section = compaction_energy(parameters, z);
+        let zero = z.splat(0.0);
+        let pressed = V::select(section.slope.lt(zero), -section.curvature, zero);
+        Self {
+            valid: within_lock_up(parameters.compaction, z),
             energy: fibre.energy + section.energy,
-            by_elongation: fibre.slope + nu * section.slope,
+            by_elongation: fibre.slope + section.slope * nu,
             by_compaction: section.slope,
-            elongation_stiffness: fibre.curvature + nu * nu * section.curvature,
-            coupling: nu * section.curvature,
+            elongation_stiffness: fibre.curvature + section.curvature * (nu * nu),
+            coupling: section.curvature * nu,
             compaction_stiffness: section.curvature,
-            pressure: (-section.slope).max(0.0),
+            pressure: (-section.slope).max(zero),
             pressure_by_compaction: pressed,
-            pressure_by_elongation: nu * pressed,
-        })
+            pressure_by_elongation: pressed * nu,
+        }
     }
 }
 
-/// `W_e`: modulus `K_ec` in compression, rising to `K_e` over the toe as `t^2 (3 - 2t)`, `t = u/w_e`.
-#[inline]
-fn fibre_energy(parameters: &BundleParameters, u: f64) -> Potential {
-    let (w, extra) = (parameters.w_e, parameters.k_e - parameters.k_ec);
-    let base = parameters.k_ec;
-    let [energy, slope, curvature] = if u < 0.0 {
-        [0.0; 3]
-    } else if u < w {
-        let t = u / w;
-        let t2 = t * t;
-        [w * w * t2 * t2 * (0.25 - 0.1 * t), w * t2 * t * (1.0 - 0.5 * t), t2 * (3.0 - 2.0 * t)]
-    } else {
-        // 3/20 w^2 is the energy at the end of the toe.
-        [0.15 * w * w + 0.5 * u * (u - w), u - 0.5 * w, 1.0]
-    };
+/// `W_e`: modulus `K_ec` in compression, rising to `K_e` over the toe as `t^2 (3 - 2t)`, `t = u/w_e` between 0 and 1;
+/// beyond the toe by `r = u - w_e` it is `3/20 w^2 + r (w + r)/2`.
+#[inline(always)]
+fn fibre_energy<V: Lanes>(parameters: &BundleParameters, u: V) -> Potential<V> {
+    let (w, base, extra) = (parameters.w_e, parameters.k_ec, parameters.k_e - parameters.k_ec);
+    let (zero, one) = (u.splat(0.0), u.splat(1.0));
+    let t = if w > 0.0 { (u / u.splat(w)).max(zero).min(one) } else { V::select(u.lt(zero), zero, one) };
+    let beyond = (u - w).max(zero);
+    let square = t * t;
+    let toe = square * square * (t * -0.1 + 0.25) * (w * w) + beyond * (beyond + w) * 0.5;
+    let slope = square * t * (t * -0.5 + 1.0) * w + beyond;
     Potential {
-        energy: 0.5 * base * u * u + extra * energy,
-        slope: base * u + extra * slope,
-        curvature: base + extra * curvature,
+        energy: u * u * (0.5 * base) + toe * extra,
+        slope: u * base + slope * extra,
+        curvature: square * (t * -2.0 + 3.0) * extra + base,
     }
 }
 
 /// `W_c(z)`, see [`Compaction`].
-#[inline]
-fn compaction_energy(parameters: &BundleParameters, z: f64) -> Result<Potential, LawError> {
+#[inline(always)]
+fn compaction_energy<V: Lanes>(parameters: &BundleParameters, z: V) -> Potential<V> {
     let k = parameters.k_c;
-    let quadratic = Potential { energy: 0.5 * k * z * z, slope: k * z, curvature: k };
-    if z >= 0.0 {
-        return Ok(quadratic);
-    }
+    let quadratic = Potential { energy: z * z * (0.5 * k), slope: z * k, curvature: z.splat(k) };
     match parameters.compaction {
-        Compaction::Quadratic => Ok(quadratic),
-        Compaction::Power { k_p, m } => Ok(with_power(quadratic, -z, k_p, m)),
+        Compaction::Quadratic => quadratic,
+        Compaction::Power { k_p, m } => with_power(quadratic, (-z).max(z.splat(0.0)), k_p, m),
         Compaction::LockUp { z_lock } => lock_up(k, z, z_lock),
     }
 }
 
-/// Adds `K_p depth^m`, `depth = -z`.
-fn with_power(quadratic: Potential, depth: f64, k_p: f64, m: f64) -> Potential {
-    let power = k_p * depth.powf(m - 2.0);
+/// Adds `K_p depth^m`, `depth = max(0, -z)`.
+#[inline(always)]
+fn with_power<V: Lanes>(quadratic: Potential<V>, depth: V, k_p: f64, m: f64) -> Potential<V> {
+    let power = depth.map(|depth| if depth > 0.0 { k_p * depth.powf(m - 2.0) } else { 0.0 });
     Potential {
         energy: quadratic.energy + power * depth * depth,
-        slope: quadratic.slope - m * power * depth,
-        curvature: quadratic.curvature + m * (m - 1.0) * power,
+        slope: quadratic.slope - power * depth * m,
+        curvature: quadratic.curvature + power * (m * (m - 1.0)),
     }
 }
 
-/// `-1/2 K_c z_l^2 ln(1 - (z/z_l)^2)`.
-fn lock_up(k: f64, z: f64, limit: f64) -> Result<Potential, LawError> {
-    if z <= limit {
-        return Err(LawError::LockedUp { compaction: z, limit });
+/// `-1/2 K_c z_l^2 ln(1 - (z/z_l)^2)` in compaction, quadratic in expansion.
+#[inline(always)]
+fn lock_up<V: Lanes>(k: f64, z: V, limit: f64) -> Potential<V> {
+    let zero = z.splat(0.0);
+    let (expanded, ratio) = (z.max(zero), z.min(zero) * (1.0 / limit));
+    let square = ratio * ratio;
+    let room = z.splat(1.0) / ((-ratio + 1.0) * (ratio + 1.0));
+    Potential {
+        energy: expanded * expanded * (0.5 * k) - (-square).ln_1p() * (0.5 * k * limit * limit),
+        slope: z * k * room,
+        curvature: (square + 1.0) * k * room * room,
     }
-    let ratio = z / limit;
-    let room = (1.0 - ratio) * (1.0 + ratio);
-    Ok(Potential {
-        energy: -0.5 * k * limit * limit * (-ratio * ratio).ln_1p(),
-        slope: k * z / room,
-        curvature: k * (1.0 + ratio * ratio) / (room * room),
-    })
+}
+
+#[inline(always)]
+fn within_lock_up<V: Lanes>(compaction: Compaction, z: V) -> V::Mask {
+    match compaction {
+        Compaction::LockUp { z_lock } => z.splat(z_lock).lt(z),
+        Compaction::Quadratic | Compaction::Power { .. } => z.equal(z),
+    }
 }
 
 #[cfg(test)]
@@ -135,7 +140,7 @@ mod tests {
     }
 
     /// Both derivatives of a potential against central differences.
-    fn check(potential: impl Fn(f64) -> Potential, at: f64) {
+    fn check(potential: impl Fn(f64) -> Potential<f64>, at: f64) {
         let step = 1e-6;
         let (low, here, high) = (potential(at - step), potential(at), potential(at + step));
         let slope = (high.energy - low.energy) / (2.0 * step);
@@ -159,7 +164,7 @@ mod tests {
         {
             let parameters = parameters(compaction);
             for z in [-0.25, -0.1, -0.01, 0.05] {
-                check(|z| compaction_energy(&parameters, z).unwrap(), z);
+                check(|z| compaction_energy(&parameters, z), z);
             }
         }
     }
@@ -175,9 +180,9 @@ mod tests {
     }
 
     #[test]
-    fn lock_up_is_an_error() {
+    fn locked_up_has_no_answer() {
         let parameters = parameters(Compaction::LockUp { z_lock: -0.3 });
-        let error = AxialResponse::new(&parameters, 0.0, -0.3).unwrap_err();
-        assert_eq!(error, LawError::LockedUp { compaction: -0.3, limit: -0.3 });
+        assert!(!AxialResponse::new(&parameters, 0.0, -0.3).valid);
+        assert!(AxialResponse::new(&parameters, 0.0, -0.299).valid);
     }
 }

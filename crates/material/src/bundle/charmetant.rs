@@ -3,7 +3,8 @@
 use super::parameters::{BundleParameters, Compaction, ModeParameters};
 use super::{BundleLaw, ConjugateForces};
 use crate::LawError;
-use crate::law::{Law, PointInput, Request, Response, StateVariable};
+use crate::lanes::Lanes;
+use crate::law::{LaneFailure, LaneInput, LaneResponse, Law, PointInput, Request, Response, StateVariable};
 
 /// Parameters of [`CharmetantLaw`] \[MPa unless stated\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +82,7 @@ impl Law for CharmetantLaw {
         self.0.state_variables()
     }
 
+    #[inline]
     fn is_symmetric(&self) -> bool {
         true
     }
@@ -107,5 +109,17 @@ impl Law for CharmetantLaw {
         out: &mut Response,
     ) -> Result<(), LawError> {
         self.0.evaluate(input, old, new, request, out)
+    }
+
+    #[inline(always)]
+    fn evaluate_lanes<V: Lanes>(
+        &self,
+        input: &LaneInput<V>,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut LaneResponse<V>,
+    ) -> Result<(), LaneFailure> {
+        self.0.evaluate_lanes(input, old, new, request, out)
     }
 }

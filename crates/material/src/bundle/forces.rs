@@ -1,10 +1,10 @@
 //! Conjugate forces, energies and the second Piola-Kirchhoff stress.
 
-use super::state::BundleState;
 use super::{BundleLaw, Update};
 use crate::LawError;
-use crate::law::{PointInput, Response};
-use crate::strain::{StrainModes, all_finite, dot};
+use crate::lanes::{Lanes, finite};
+use crate::law::{LaneResponse, PointInput};
+use crate::strain::{StrainModes, dot};
 
 /// Forces conjugate to the strain modes after an increment, and whether the modes slid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,7 +40,7 @@ impl BundleLaw {
     /// # Errors
     /// As [`crate::Law::evaluate`].
     pub fn conjugate_forces(&self, input: &PointInput, old: &[f64]) -> Result<ConjugateForces, LawError> {
-        let update = self.update(input, &BundleState::read(old, self.slides, self.presses)?)?;
+        let update = self.update_point(input, old)?;
         Ok(ConjugateForces {
             modes: update.kinematics.modes,
             elongation: update.axial.by_elongation,
@@ -55,19 +55,19 @@ impl BundleLaw {
 
 /// `P_ab = dW/dT_ab` in its parts: `P = chi T^-1 + deviator of w`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SectionStress {
+pub(super) struct SectionStress<V> {
     /// `chi = (W_,c - q_t.v/m)/4`.
-    pub(super) chi: f64,
+    pub(super) chi: V,
     /// `q_t . v`.
-    pub(super) work: f64,
+    pub(super) work: V,
     /// `P22`, `P33`, `P23`.
-    pub(super) components: [f64; 3],
+    pub(super) components: [V; 3],
 }
 
-impl Update {
+impl<V: Lanes> Update<V> {
     /// Stored energy, incremental potential and mid-point dissipation.
-    #[inline]
-    pub(super) fn write_energies(&self, presses: bool, out: &mut Response) {
+    #[inline(always)]
+    pub(super) fn write_energies(&self, presses: bool, out: &mut LaneResponse<V>) {
         let dissipated = [self.transverse.dissipated_mid, self.longitudinal.dissipated_mid];
         out.stored_energy = self.axial.energy + self.transverse.stored + self.longitudinal.stored;
         out.dissipated_mid = dissipated;
@@ -75,39 +75,39 @@ impl Update {
         out.incremental_potential = (!presses).then_some(out.stored_energy + dissipated[0] + dissipated[1]);
     }
 
-    #[inline]
-    pub(super) fn section_stress(&self) -> SectionStress {
+    #[inline(always)]
+    pub(super) fn section_stress(&self) -> SectionStress<V> {
         let kinematics = &self.kinematics;
         let (q, v) = (self.transverse.force, kinematics.deviator);
         let work = dot(q, v);
-        let chi = 0.25 * (self.axial.by_compaction - work * kinematics.inverse_mean);
+        let chi = (self.axial.by_compaction - work * kinematics.inverse_mean) * 0.25;
         let radial = kinematics.c * work;
-        let w = [kinematics.phi * q[0] - radial * v[0], kinematics.phi * q[1] - radial * v[1]];
+        let phi = kinematics.phi;
+        let w = [(phi * q[0] - radial * v[0]) * 0.5, (phi * q[1] - radial * v[1]) * 0.5];
         let spherical = chi * kinematics.inverse_det;
         let [t22, t33, t23] = kinematics.section;
-        let components = [spherical * t33 + 0.5 * w[0], spherical * t22 - 0.5 * w[0], 0.5 * w[1] - spherical * t23];
+        let components = [spherical * t33 + w[0], spherical * t22 - w[0], w[1] - spherical * t23];
         SectionStress { chi, work, components }
     }
 
     /// `S = (W_,e/C11) e1 e1 + 2 P_ab N_a N_b + (2/C11) W_,ga sym(e1 N_a)`; without the first term when the
-    /// elongation is averaged.
-    #[inline]
+    /// elongation is averaged. Answers where it is finite.
+    #[inline(always)]
     pub(super) fn write_stress(
         &self,
-        section: &SectionStress,
+        section: &SectionStress<V>,
         averaged: bool,
-        out: &mut Response,
-    ) -> Result<(), LawError> {
+        out: &mut LaneResponse<V>,
+    ) -> V::Mask {
         use std::f64::consts::SQRT_2;
         let inverse = self.kinematics.inverse_c11;
-        let fibre = if averaged { 0.0 } else { self.axial.by_elongation * inverse };
+        let fibre = if averaged { inverse.splat(0.0) } else { self.axial.by_elongation * inverse };
         let [p22, p33, p23] = section.components;
         let q = self.longitudinal.force;
-        let shear = SQRT_2 * inverse;
-        let reduced = [fibre, 2.0 * p22, 2.0 * p33, shear * q[0], shear * q[1], 2.0 * SQRT_2 * p23];
-        let stress = self.kinematics.expand(reduced);
-        out.second_piola = stress.into();
-        let finite = all_finite(&stress) && out.stored_energy.is_finite();
-        if finite { Ok(()) } else { Err(LawError::NonFiniteResponse) }
+        let shear = inverse * SQRT_2;
+        let reduced = [fibre, p22 * 2.0, p33 * 2.0, shear * q[0], shear * q[1], p23 * (2.0 * SQRT_2)];
+        out.second_piola = self.kinematics.expand(reduced);
+        let [s1, s2, s3, s4, s5, s6] = out.second_piola;
+        finite(&[s1, s2, s3, s4, s5, s6, out.stored_energy])
     }
 }

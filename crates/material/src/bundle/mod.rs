@@ -9,8 +9,9 @@ mod state;
 mod tangent;
 
 use crate::LawError;
-use crate::law::{Law, PointInput, Request, Response, StateVariable};
-use crate::strain::Kinematics;
+use crate::lanes::{Lanes, finite};
+use crate::law::{LaneFailure, LaneInput, LaneResponse, Law, PointInput, Request, Response, StateVariable, each_lane};
+use crate::strain::{Kinematics, failure, rows};
 use axial::AxialResponse;
 pub use charmetant::{CharmetantLaw, CharmetantParameters};
 pub use forces::ConjugateForces;
@@ -37,11 +38,13 @@ pub struct BundleLaw {
 
 /// What one evaluation finds before it is cast into stress and tangent.
 #[derive(Clone, Copy, Debug)]
-struct Update {
-    kinematics: Kinematics,
-    axial: AxialResponse,
-    transverse: ModeUpdate,
-    longitudinal: ModeUpdate,
+struct Update<V: Lanes> {
+    kinematics: Kinematics<V>,
+    axial: AxialResponse<V>,
+    transverse: ModeUpdate<V>,
+    longitudinal: ModeUpdate<V>,
+    /// Where input and answer are sound.
+    valid: V::Mask,
 }
 
 impl BundleLaw {
@@ -64,15 +67,13 @@ impl BundleLaw {
     }
 
     /// Strain modes, axial response and return map of both modes.
-    #[inline]
-    fn update(&self, input: &PointInput, old: &BundleState) -> Result<Update, LawError> {
-        let kinematics = Kinematics::new(&input.displacement_gradient)?;
+    #[inline(always)]
+    fn update<V: Lanes>(&self, input: &LaneInput<V>, old: &[f64]) -> Update<V> {
+        let old = BundleState::read(input.gradient[0][0], old, input.points, self.slides, self.presses);
+        let kinematics = Kinematics::new(&input.gradient);
         let modes = &kinematics.modes;
-        let elongation = input.mean_elongation.unwrap_or(modes.elongation);
-        if !elongation.is_finite() {
-            return Err(LawError::NonFiniteInput);
-        }
-        let axial = AxialResponse::new(&self.parameters, elongation, modes.compaction)?;
+        let axial =
+            AxialResponse::new(&self.parameters, input.mean_elongation.unwrap_or(modes.elongation), modes.compaction);
         let drive = |strain, old_mode| ModeInput {
             strain,
             old: old_mode,
@@ -82,7 +83,69 @@ impl BundleLaw {
         let transverse = ModeUpdate::new(&self.parameters.transverse, &drive(modes.distortion, old.transverse));
         let longitudinal =
             ModeUpdate::new(&self.parameters.longitudinal, &drive(modes.longitudinal_shear, old.longitudinal));
-        Ok(Update { kinematics, axial, transverse, longitudinal })
+        let mut valid = kinematics.valid & axial.valid;
+        if self.slides {
+            valid = valid & finite(&old.numbers());
+        }
+        Update { kinematics, axial, transverse, longitudinal, valid }
+    }
+
+    /// [`BundleLaw::update`] of a single point.
+    fn update_point(&self, input: &PointInput, old: &[f64]) -> Result<Update<f64>, LawError> {
+        self.check_length(old, 1)?;
+        let update = self.update(&LaneInput::of(input), old);
+        if update.valid { Ok(update) } else { Err(self.diagnose(input, old)) }
+    }
+
+    /// The whole answer; says in which lanes it is one.
+    #[inline(always)]
+    fn answer<V: Lanes>(
+        &self,
+        input: &LaneInput<V>,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut LaneResponse<V>,
+    ) -> V::Mask {
+        let update = self.update(input, old);
+        update.write_state(new, input.points, self.slides, self.presses);
+        let section = update.section_stress();
+        let averaged = input.mean_elongation.is_some();
+        update.write_energies(self.presses, out);
+        let mut valid = update.valid & update.write_stress(&section, averaged, out);
+        if averaged {
+            update.write_fibre_response(out);
+        }
+        if request == Request::Tangent {
+            valid = valid & update.write_tangent(&section, averaged, out);
+        }
+        valid
+    }
+
+    #[inline(always)]
+    fn check_length(&self, state: &[f64], points: usize) -> Result<(), LawError> {
+        let (expected, found) = (self.state_len(), state.len());
+        if found == expected * points { Ok(()) } else { Err(LawError::StateLength { expected, found }) }
+    }
+
+    /// Why a point has no answer.
+    #[cold]
+    fn diagnose(&self, input: &PointInput, old: &[f64]) -> LawError {
+        let elongation = input.mean_elongation.unwrap_or(0.0);
+        if !elongation.is_finite() || !old.iter().all(|number| number.is_finite()) {
+            return LawError::NonFiniteInput;
+        }
+        let gradient = rows(&input.displacement_gradient);
+        let kinematics = Kinematics::new(&gradient);
+        if !kinematics.valid {
+            return failure(&gradient);
+        }
+        let modes = &kinematics.modes;
+        let compaction = modes.compaction + self.parameters.nu * input.mean_elongation.unwrap_or(modes.elongation);
+        match self.parameters.compaction {
+            Compaction::LockUp { z_lock } if compaction <= z_lock => LawError::LockedUp { compaction, limit: z_lock },
+            _ => LawError::NonFiniteResponse,
+        }
     }
 }
 
@@ -100,6 +163,7 @@ impl Law for BundleLaw {
         state::len(self.slides, self.presses)
     }
 
+    #[inline]
     fn is_symmetric(&self) -> bool {
         !self.presses
     }
@@ -125,19 +189,30 @@ impl Law for BundleLaw {
         request: Request,
         out: &mut Response,
     ) -> Result<(), LawError> {
-        let old_state = BundleState::read(old, self.slides, self.presses)?;
-        let update = self.update(input, &old_state)?;
-        update.write_state(new, self.slides, self.presses)?;
-        let section = update.section_stress();
-        let averaged = input.mean_elongation.is_some();
-        update.write_energies(self.presses, out);
-        update.write_stress(&section, averaged, out)?;
-        if averaged {
-            update.write_fibre_response(out);
+        self.check_length(old, 1)?;
+        self.check_length(new, 1)?;
+        let mut lane = LaneResponse::zero(0.0);
+        if !self.answer(&LaneInput::of(input), old, new, request, &mut lane) {
+            return Err(self.diagnose(input, old));
         }
-        match request {
-            Request::Stress => Ok(()),
-            Request::Tangent => update.write_tangent(&section, averaged, out),
+        lane.write_to(out, request);
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn evaluate_lanes<V: Lanes>(
+        &self,
+        input: &LaneInput<V>,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut LaneResponse<V>,
+    ) -> Result<(), LaneFailure> {
+        let fits = self.check_length(old, input.points).and(self.check_length(new, input.points));
+        if fits.is_ok() && V::all(self.answer(input, old, new, request, out)) {
+            return Ok(());
         }
+        // The lanes one by one say which of them fails, and why.
+        each_lane(self, input, old, new, request, out)
     }
 }

@@ -2,9 +2,8 @@
 
 use super::Update;
 use super::friction::ModeState;
-use crate::LawError;
+use crate::lanes::Lanes;
 use crate::law::{StateKind, StateVariable};
-use crate::strain::all_finite;
 
 const fn variable(kind: StateKind, offset: usize, components: usize) -> StateVariable {
     StateVariable { kind, offset, components }
@@ -30,7 +29,7 @@ pub(super) fn variables(slides: bool, presses: bool) -> &'static [StateVariable]
 }
 
 /// Numbers in the state.
-#[inline]
+#[inline(always)]
 pub(super) fn len(slides: bool, presses: bool) -> usize {
     match (slides, presses) {
         (false, _) => 0,
@@ -40,67 +39,65 @@ pub(super) fn len(slides: bool, presses: bool) -> usize {
 }
 
 /// State of both modes and the compaction pressure of the last increment.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct BundleState {
-    pub(super) transverse: ModeState,
-    pub(super) longitudinal: ModeState,
-    pub(super) pressure: f64,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BundleState<V> {
+    pub(super) transverse: ModeState<V>,
+    pub(super) longitudinal: ModeState<V>,
+    pub(super) pressure: V,
 }
 
-impl BundleState {
-    #[inline]
-    pub(super) fn read(old: &[f64], slides: bool, presses: bool) -> Result<Self, LawError> {
-        if !slides {
-            return Ok(Self::default());
+impl<V: Lanes> BundleState<V> {
+    /// From the states of `count` points one after the other, whose length has been checked; lanes without a point
+    /// repeat the last.
+    #[inline(always)]
+    pub(super) fn read(witness: V, old: &[f64], count: usize, slides: bool, presses: bool) -> Self {
+        let n = len(slides, presses);
+        let mut numbers = [witness.splat(0.0); 9];
+        for (at, number) in numbers.iter_mut().enumerate().take(n) {
+            *number = witness.from_fn(|lane| old[lane.min(count - 1) * n + at]);
         }
-        let wrong = LawError::StateLength { expected: len(slides, presses), found: old.len() };
-        let Some((&[d1, d2, g2, g3, kappa_t, kappa_l, d_t, d_l], rest)) = old.split_first_chunk() else {
-            return Err(wrong);
-        };
-        if !all_finite(old) {
-            return Err(LawError::NonFiniteInput);
-        }
-        let pressure = match (presses, rest) {
-            (false, []) => 0.0,
-            (true, &[pressure]) => pressure,
-            _ => return Err(wrong),
-        };
-        Ok(Self {
+        let [d1, d2, g2, g3, kappa_t, kappa_l, d_t, d_l, pressure] = numbers;
+        Self {
             transverse: ModeState { plastic: [d1, d2], sliding: kappa_t, dissipation: d_t },
             longitudinal: ModeState { plastic: [g2, g3], sliding: kappa_l, dissipation: d_l },
             pressure,
-        })
+        }
+    }
+
+    /// All that was read.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> [V; 9] {
+        numbers(&self.transverse, &self.longitudinal, self.pressure)
     }
 }
 
-impl Update {
-    #[inline]
-    pub(super) fn write_state(&self, new: &mut [f64], slides: bool, presses: bool) -> Result<(), LawError> {
-        if !slides {
-            return Ok(());
-        }
-        let found = new.len();
-        let (t, l) = (&self.transverse.new, &self.longitudinal.new);
-        let numbers = [
-            t.plastic[0],
-            t.plastic[1],
-            l.plastic[0],
-            l.plastic[1],
-            t.sliding,
-            l.sliding,
-            t.dissipation,
-            l.dissipation,
-        ];
-        match (presses, new.split_first_chunk_mut()) {
-            (false, Some((head, []))) => *head = numbers,
-            (true, Some((head, [pressure]))) => {
-                *head = numbers;
-                *pressure = self.axial.pressure;
+/// In the order of [`VARIABLES`].
+#[inline(always)]
+fn numbers<V: Lanes>(t: &ModeState<V>, l: &ModeState<V>, pressure: V) -> [V; 9] {
+    [
+        t.plastic[0],
+        t.plastic[1],
+        l.plastic[0],
+        l.plastic[1],
+        t.sliding,
+        l.sliding,
+        t.dissipation,
+        l.dissipation,
+        pressure,
+    ]
+}
+
+impl<V: Lanes> Update<V> {
+    /// Writes the states of `count` points one after the other.
+    #[inline(always)]
+    pub(super) fn write_state(&self, new: &mut [f64], count: usize, slides: bool, presses: bool) {
+        let n = len(slides, presses);
+        let numbers = numbers(&self.transverse.new, &self.longitudinal.new, self.axial.pressure);
+        for (at, number) in numbers.iter().take(n).enumerate() {
+            let lanes = number.to_array();
+            for (lane, value) in lanes.iter().take(count.min(V::COUNT)).enumerate() {
+                new[lane * n + at] = *value;
             }
-            _ => {
-                return Err(LawError::StateLength { expected: len(slides, presses), found });
-            }
         }
-        Ok(())
     }
 }

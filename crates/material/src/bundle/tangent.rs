@@ -7,54 +7,52 @@
 
 use std::f64::consts::SQRT_2;
 
-use nalgebra::Matrix6;
-
 use super::Update;
 use super::forces::SectionStress;
-use crate::LawError;
-use crate::law::Response;
-use crate::strain::{all_finite, dot};
+use crate::lanes::{Lanes, finite};
+use crate::law::LaneResponse;
+use crate::strain::dot;
 
 /// Rows of a 6x6 matrix in the reduced Mandel order 11, 22, 33, 12, 13, 23.
-type Rows = [[f64; 6]; 6];
+type Rows<V> = [[V; 6]; 6];
 /// Quadratic form in `(dI_comp, dd, do)`.
-type SectionForm = [[f64; 3]; 3];
+type SectionForm<V> = [[V; 3]; 3];
 
-impl Update {
-    /// Writes `dS/dE`, at a fixed elongation when it is averaged.
-    #[inline]
+impl<V: Lanes> Update<V> {
+    /// Writes `dS/dE`, at a fixed elongation when it is averaged. Answers where it is finite.
+    #[inline(always)]
     pub(super) fn write_tangent(
         &self,
-        section: &SectionStress,
+        section: &SectionStress<V>,
         averaged: bool,
-        out: &mut Response,
-    ) -> Result<(), LawError> {
-        let mut rows = [[0.0; 6]; 6];
+        out: &mut LaneResponse<V>,
+    ) -> V::Mask {
+        let mut rows = [[self.kinematics.phi.splat(0.0); 6]; 6];
         self.add_section(section, &mut rows);
         self.add_shear(section, &mut rows);
         if !averaged {
             self.add_fibre(&mut rows);
         }
         self.expand_rows(&mut rows, &mut out.tangent);
-        if all_finite(out.tangent.as_slice()) { Ok(()) } else { Err(LawError::NonFiniteResponse) }
+        finite(out.tangent.as_flattened())
     }
 
     /// Writes the response conjugate to an averaged elongation.
-    #[inline]
-    pub(super) fn write_fibre_response(&self, out: &mut Response) {
+    #[inline(always)]
+    pub(super) fn write_fibre_response(&self, out: &mut LaneResponse<V>) {
         let axial = &self.axial;
         let [b1, b2, b3] = self.kinematics.compaction_gradient();
-        let coupling = axial.coupling;
-        let by_strain = [0.0, coupling * b1, coupling * b2, 0.0, 0.0, coupling * b3];
+        let (coupling, zero) = (axial.coupling, axial.coupling.splat(0.0));
+        let by_strain = [zero, coupling * b1, coupling * b2, zero, zero, coupling * b3];
         out.fibre.fibre_stress = axial.by_elongation;
         out.fibre.fibre_stiffness = axial.elongation_stiffness;
-        out.fibre.fibre_stress_by_strain = self.kinematics.expand_vector(by_strain);
-        out.fibre.stress_by_elongation = self.kinematics.expand_vector(self.stress_by_elongation());
+        out.fibre.fibre_stress_by_strain = self.kinematics.expand(by_strain);
+        out.fibre.stress_by_elongation = self.kinematics.expand(self.stress_by_elongation());
     }
 
     /// `dS/de` at fixed strain, reduced.
-    #[inline]
-    fn stress_by_elongation(&self) -> [f64; 6] {
+    #[inline(always)]
+    fn stress_by_elongation(&self) -> [V; 6] {
         let axial = &self.axial;
         let [b1, b2, b3] = self.kinematics.compaction_gradient();
         let [c, d, o] = self.pressure_force();
@@ -62,30 +60,30 @@ impl Update {
         let slope = axial.pressure_by_elongation;
         let compaction = axial.coupling + slope * c;
         [
-            0.0,
+            slope.splat(0.0),
             compaction * b1 + slope * d,
             compaction * b2 - slope * d,
             slope * shear[0],
             slope * shear[1],
-            compaction * b3 + SQRT_2 * slope * o,
+            compaction * b3 + slope * o * SQRT_2,
         ]
     }
 
     /// Change of the transverse force with pressure, as a covector in `(dI_comp, dd, do)`.
-    #[inline]
-    fn pressure_force(&self) -> [f64; 3] {
+    #[inline(always)]
+    fn pressure_force(&self) -> [V; 3] {
         let kinematics = &self.kinematics;
         let (n, v) = (self.transverse.direction, kinematics.deviator);
         let slope = self.transverse.pressure_slope;
         let along = slope * dot(v, n);
         let (phi, radial) = (slope * kinematics.phi, kinematics.c * along);
-        [-along * kinematics.inverse_mean, phi * n[0] - radial * v[0], phi * n[1] - radial * v[1]]
+        [-(along * kinematics.inverse_mean), phi * n[0] - radial * v[0], phi * n[1] - radial * v[1]]
     }
 
     /// Change of the longitudinal shear stress with pressure, entries 12 and 13.
-    #[inline]
-    fn pressure_shear(&self) -> [f64; 2] {
-        let factor = SQRT_2 * self.longitudinal.pressure_slope * self.kinematics.inverse_c11;
+    #[inline(always)]
+    fn pressure_shear(&self) -> [V; 2] {
+        let factor = self.longitudinal.pressure_slope * self.kinematics.inverse_c11 * SQRT_2;
         let n = self.longitudinal.direction;
         [factor * n[0], factor * n[1]]
     }
@@ -95,29 +93,28 @@ impl Update {
     /// + (a/m^3)(dI_comp v.dv' + dI_comp' v.dv) + (2 s^2 a/m^3) dI_comp dI_comp' - (a/m) d2I_comp`, and
     /// `d2I_comp = (2 s^2/m^2 - 4) dI_comp dI_comp' + (dI_comp v.dv' + dI_comp' v.dv)/m^2
     /// - (dv.dv' + (v x dv)(v x dv')/s^2)/(2 m^2)`.
-    #[inline]
-    fn section_form(&self, section: &SectionStress) -> SectionForm {
+    #[inline(always)]
+    fn section_form(&self, section: &SectionStress<V>) -> SectionForm<V> {
         let k = &self.kinematics;
         let (q, v) = (self.transverse.force, k.deviator);
         let (phi, c, inverse) = (k.phi, k.c, k.inverse_mean);
         let inverse_square = inverse * inverse;
-        let ratio = 2.0 * k.section_det * inverse_square;
-        let (a, chi4) = (section.work, 4.0 * section.chi);
+        let ratio = k.section_det * inverse_square * 2.0;
+        let (a, chi4) = (section.work, section.chi * 4.0);
         // dD = (-v/m) dI_comp + (phi - c v v) dv.
-        let gradient = [
-            [-v[0] * inverse, phi - c * v[0] * v[0], -c * v[0] * v[1]],
-            [-v[1] * inverse, -c * v[0] * v[1], phi - c * v[1] * v[1]],
-        ];
+        let cross = -(c * v[0] * v[1]);
+        let gradient =
+            [[-(v[0] * inverse), phi - c * v[0] * v[0], cross], [-(v[1] * inverse), cross, phi - c * v[1] * v[1]]];
         let mut form = self.transverse_stiffness(&gradient);
         let mixed = (a * inverse + chi4) * inverse_square;
         let compaction = self.axial.compaction_stiffness + ratio * a * inverse + chi4 * (ratio - 4.0);
         let border = [mixed * v[0] - q[0] * inverse, mixed * v[1] - q[1] * inverse];
-        let around = 0.5 * chi4 * inverse_square;
+        let around = chi4 * inverse_square * 0.5;
         let turned = around * k.inverse_det;
-        let (isotropic, radial) = (-c * a - around, a * k.c_v);
+        let (isotropic, radial) = (-(c * a) - around, a * k.c_v);
         form[0][0] += compaction;
-        form[1][1] += isotropic + (radial * v[0] - 2.0 * c * q[0]) * v[0] - turned * v[1] * v[1];
-        form[2][2] += isotropic + (radial * v[1] - 2.0 * c * q[1]) * v[1] - turned * v[0] * v[0];
+        form[1][1] += isotropic + (radial * v[0] - c * q[0] * 2.0) * v[0] - turned * v[1] * v[1];
+        form[2][2] += isotropic + (radial * v[1] - c * q[1] * 2.0) * v[1] - turned * v[0] * v[0];
         let off = (radial + turned) * v[0] * v[1] - c * (v[0] * q[1] + v[1] * q[0]);
         form[1][2] += off;
         form[2][1] += off;
@@ -129,13 +126,13 @@ impl Update {
     }
 
     /// `gradient^T (dq/dI) gradient` for the transverse mode.
-    #[inline]
-    fn transverse_stiffness(&self, gradient: &[[f64; 3]; 2]) -> SectionForm {
+    #[inline(always)]
+    fn transverse_stiffness(&self, gradient: &[[V; 3]; 2]) -> SectionForm<V> {
         let mode = &self.transverse;
         let (along, across) = (mode.along - mode.across, mode.across);
         let [d, o] = gradient;
         let n = mode.direction;
-        let mut form = [[0.0; 3]; 3];
+        let mut form = [[across.splat(0.0); 3]; 3];
         for i in 0..3 {
             let sliding = along * (n[0] * d[i] + n[1] * o[i]);
             for j in 0..3 {
@@ -148,52 +145,56 @@ impl Update {
 
     /// Transverse block `B^T form B`, `B` = rows of `dI_comp`, `dd`, `do` in the entries 22, 33, 23, and what pressure
     /// adds through compaction.
-    #[inline]
-    fn add_section(&self, section: &SectionStress, rows: &mut Rows) {
+    #[inline(always)]
+    fn add_section(&self, section: &SectionStress<V>, rows: &mut Rows<V>) {
         let gradient = self.kinematics.compaction_gradient();
         let mut form = self.section_form(section);
-        if self.transverse.pressure_slope > 0.0 {
+        if positive(self.transverse.pressure_slope) {
             let force = self.pressure_force();
             for i in 0..3 {
                 form[i][0] += force[i] * self.axial.pressure_by_compaction;
             }
         }
-        let right = form.map(|[c, d, o]| [c * gradient[0] + d, c * gradient[1] - d, c * gradient[2] + SQRT_2 * o]);
+        let mut right = form;
+        for [first, second, third] in &mut right {
+            let [c, d, o] = [*first, *second, *third];
+            [*first, *second, *third] = [c * gradient[0] + d, c * gradient[1] - d, c * gradient[2] + o * SQRT_2];
+        }
         let place = [1, 2, 5];
         for j in 0..3 {
             let [c, d, o] = [right[0][j], right[1][j], right[2][j]];
             rows[1][place[j]] = gradient[0] * c + d;
             rows[2][place[j]] = gradient[1] * c - d;
-            rows[5][place[j]] = gradient[2] * c + SQRT_2 * o;
+            rows[5][place[j]] = gradient[2] * c + o * SQRT_2;
         }
     }
 
     /// Longitudinal block: `(4/C11^2) dq/dI` and, from `d2T_ab = -C11 (dg_a dg_b' + dg_b dg_a')`, `-(8/C11) P_ab`.
-    #[inline]
-    fn add_shear(&self, section: &SectionStress, rows: &mut Rows) {
+    #[inline(always)]
+    fn add_shear(&self, section: &SectionStress<V>, rows: &mut Rows<V>) {
         let inverse = self.kinematics.inverse_c11;
-        let stiffness = 2.0 * inverse * inverse;
+        let stiffness = inverse * inverse * 2.0;
         let [p22, p33, p23] = section.components;
         let first = self.longitudinal.stiffness_times([1.0, 0.0]);
         let second = self.longitudinal.stiffness_times([0.0, 1.0]);
-        let geometric = -4.0 * inverse;
+        let geometric = inverse * -4.0;
         rows[3][3] = stiffness * first[0] + geometric * p22;
         rows[4][4] = stiffness * second[1] + geometric * p33;
         rows[3][4] = stiffness * second[0] + geometric * p23;
         rows[4][3] = rows[3][4];
         let q = self.longitudinal.force;
-        let turning = -2.0 * SQRT_2 * inverse * inverse;
+        let turning = inverse * inverse * (-2.0 * SQRT_2);
         for (i, force) in [(3, q[0]), (4, q[1])] {
             rows[0][i] = turning * force;
             rows[i][0] = turning * force;
         }
-        if self.longitudinal.pressure_slope > 0.0 {
+        if positive(self.longitudinal.pressure_slope) {
             self.add_pressure_shear(rows);
         }
     }
 
-    #[inline]
-    fn add_pressure_shear(&self, rows: &mut Rows) {
+    #[inline(always)]
+    fn add_pressure_shear(&self, rows: &mut Rows<V>) {
         let shear = self.pressure_shear();
         let slope = self.axial.pressure_by_compaction;
         let [b1, b2, b3] = self.kinematics.compaction_gradient();
@@ -205,28 +206,38 @@ impl Update {
     }
 
     /// What the point's own elongation adds: its stiffness, its coupling and `d2I_elong = -dC11 dC11'/(2 C11^2)`.
-    #[inline]
-    fn add_fibre(&self, rows: &mut Rows) {
+    #[inline(always)]
+    fn add_fibre(&self, rows: &mut Rows<V>) {
         let axial = &self.axial;
         let inverse = self.kinematics.inverse_c11;
         let [b1, b2, b3] = self.kinematics.compaction_gradient();
         let coupling = axial.coupling * inverse;
-        let row = [0.0, coupling * b1, coupling * b2, 0.0, 0.0, coupling * b3];
+        for (i, gradient) in [(1, b1), (2, b2), (5, b3)] {
+            rows[0][i] += coupling * gradient;
+        }
         let column = self.stress_by_elongation();
         for i in 1..6 {
-            rows[0][i] += row[i];
             rows[i][0] += column[i] * inverse;
         }
-        rows[0][0] += (axial.elongation_stiffness - 2.0 * axial.by_elongation) * inverse * inverse;
+        rows[0][0] += (axial.elongation_stiffness - axial.by_elongation * 2.0) * inverse * inverse;
     }
 
     /// `M^T rows M`, `M` the map from the Mandel strain increment to the reduced one: `M^T` from the left,
     /// transposed, and once more, which leaves the columns of the tangent.
-    #[inline]
-    fn expand_rows(&self, rows: &mut Rows, tangent: &mut Matrix6<f64>) {
+    #[inline(always)]
+    fn expand_rows(&self, rows: &mut Rows<V>, columns: &mut Rows<V>) {
         self.kinematics.expand_columns(rows);
-        let mut columns: Rows = std::array::from_fn(|j| rows.map(|row| row[j]));
-        self.kinematics.expand_columns(&mut columns);
-        tangent.as_mut_slice().copy_from_slice(columns.as_flattened());
+        for (i, row) in rows.iter().enumerate() {
+            for (j, entry) in row.iter().enumerate() {
+                columns[j][i] = *entry;
+            }
+        }
+        self.kinematics.expand_columns(columns);
     }
+}
+
+/// Whether any lane is positive.
+#[inline(always)]
+fn positive<V: Lanes>(numbers: V) -> bool {
+    V::any(numbers.splat(0.0).lt(numbers))
 }

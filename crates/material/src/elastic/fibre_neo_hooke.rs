@@ -58,6 +58,7 @@ impl Law for FibreNeoHooke {
         &[]
     }
 
+    #[inline]
     fn is_symmetric(&self) -> bool {
         true
     }

@@ -3,7 +3,8 @@
 use nalgebra::Matrix3;
 
 use crate::LawError;
-use crate::strain::{LogarithmFactors, all_finite};
+use crate::lanes::{self, finite};
+use crate::strain::{LogarithmFactors, rows};
 
 /// Volume growth below which `ln J` is `log1p(J - 1)`.
 const SMALL_GROWTH: f64 = 0.5;
@@ -71,10 +72,10 @@ impl Measures {
 /// [`LawError::NonFiniteInput`], [`LawError::Inverted`].
 #[inline]
 pub(super) fn volume_growth(h: &Matrix3<f64>) -> Result<f64, LawError> {
-    if !all_finite(h.as_slice()) {
+    if !finite(h.as_slice()) {
         return Err(LawError::NonFiniteInput);
     }
-    let growth = h.trace() + principal_minors(h) + h.determinant();
+    let growth = lanes::volume_growth(&rows(h));
     if !growth.is_finite() {
         return Err(LawError::NonFiniteResponse);
     }

@@ -6,8 +6,8 @@ mod neo_hooke;
 mod st_venant_kirchhoff;
 
 use crate::LawError;
+use crate::lanes::finite;
 use crate::law::{PointInput, Response};
-use crate::strain::all_finite;
 
 pub use fibre_neo_hooke::FibreNeoHooke;
 pub use neo_hooke::{CompressibleNeoHooke, IsochoricNeoHooke};
@@ -25,13 +25,13 @@ fn finish(energy: f64, out: &mut Response) -> Result<(), LawError> {
     out.stored_energy = energy;
     out.incremental_potential = Some(energy);
     out.dissipated_mid = [0.0; 2];
-    let finite = energy.is_finite() && all_finite(out.second_piola.as_slice());
+    let finite = energy.is_finite() && finite(out.second_piola.as_slice());
     if finite { Ok(()) } else { Err(LawError::NonFiniteResponse) }
 }
 
 #[inline]
 fn require_finite_tangent(out: &Response) -> Result<(), LawError> {
-    if all_finite(out.tangent.as_slice()) { Ok(()) } else { Err(LawError::NonFiniteResponse) }
+    if finite(out.tangent.as_slice()) { Ok(()) } else { Err(LawError::NonFiniteResponse) }
 }
 
 /// Error unless a parameter is finite and positive.

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Matrix6};
 use super::measures::volume_growth;
 use super::{finish, positive, refuse_mean_elongation, require};
 use crate::LawError;
-use crate::law::{Law, PointInput, Request, Response, StateVariable};
+use crate::lanes::{self, Lanes, finite};
+use crate::law::{LaneFailure, LaneInput, LaneResponse, Law, PointInput, Request, Response, StateVariable, each_lane};
 use crate::mandel::green_lagrange;
 
 /// Engineering constants of an orthotropic material, moduli \[MPa\], Poisson ratios \[-\]; 1 is the fibre.
@@ -114,6 +115,7 @@ impl Law for StVenantKirchhoff {
         &[]
     }
 
+    #[inline]
     fn is_symmetric(&self) -> bool {
         true
     }
@@ -143,5 +145,38 @@ impl Law for StVenantKirchhoff {
             out.tangent = self.stiffness;
         }
         finish(0.5 * strain.dot(&out.second_piola), out)
+    }
+
+    #[inline(always)]
+    fn evaluate_lanes<V: Lanes>(
+        &self,
+        input: &LaneInput<V>,
+        old: &[f64],
+        new: &mut [f64],
+        request: Request,
+        out: &mut LaneResponse<V>,
+    ) -> Result<(), LaneFailure> {
+        let growth = lanes::volume_growth(&input.gradient);
+        let strain = lanes::green_lagrange(&input.gradient);
+        let stiffness = &self.stiffness;
+        let zero = growth.splat(0.0);
+        out.second_piola = [zero; 6];
+        let mut energy = zero;
+        for i in 0..6 {
+            for j in 0..6 {
+                let modulus = zero.splat(stiffness[(i, j)]);
+                out.second_piola[i] = strain[j].mul_add(modulus, out.second_piola[i]);
+                if request == Request::Tangent {
+                    out.tangent[j][i] = modulus;
+                }
+            }
+            energy = strain[i].mul_add(out.second_piola[i] * 0.5, energy);
+        }
+        (out.stored_energy, out.incremental_potential, out.dissipated_mid) = (energy, Some(energy), [zero; 2]);
+        let sound = zero.splat(-1.0).lt(growth) & finite(&out.second_piola) & finite(&[energy, growth]);
+        if input.mean_elongation.is_none() && V::all(sound) {
+            return Ok(());
+        }
+        each_lane(self, input, old, new, request, out)
     }
 }

@@ -1,5 +1,7 @@
 //! The function `h(Y) = atanh(sqrt Y)/sqrt Y` behind the distortion, with its divided differences.
 
+use crate::lanes::Lanes;
+
 /// Below this `Y` the series is used: the closed divided differences lose digits there.
 const SERIES_LIMIT: f64 = 0.2;
 /// Below this `Y` ten terms of the series are exact to double precision.
@@ -7,25 +9,49 @@ const SHORT_SERIES_LIMIT: f64 = 0.02;
 
 /// `h = sum Y^j/(2j+1)`, `k = (h - 1)/Y = sum Y^j/(2j+3)`, `l = (3k - 1)/Y = sum 3 Y^j/(2j+5)`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LogarithmFactors {
-    pub(crate) h: f64,
-    pub(crate) k: f64,
-    pub(crate) l: f64,
+pub(crate) struct LogarithmFactors<V = f64> {
+    pub(crate) h: V,
+    pub(crate) k: V,
+    pub(crate) l: V,
 }
 
-impl LogarithmFactors {
+impl<V: Lanes> LogarithmFactors<V> {
     /// Factors at `Y = R/m^2`; `complement` is `1 - Y = s^2/m^2`, never formed by subtraction.
-    #[inline]
-    pub(crate) fn new(y: f64, complement: f64) -> Self {
-        if y < SERIES_LIMIT {
-            let l = if y < SHORT_SERIES_LIMIT { series::<10>(y) } else { series::<24>(y) };
-            let k = (1.0 + y * l) / 3.0;
-            Self { h: 1.0 + y * k, k, l }
+    #[inline(always)]
+    pub(crate) fn new(y: V, complement: V) -> Self {
+        if V::all(y.lt(y.splat(SHORT_SERIES_LIMIT))) {
+            Self::from_series(y, series::<V, 10>(y))
+        } else if V::all(y.lt(y.splat(SERIES_LIMIT))) {
+            Self::from_series(y, series::<V, 24>(y))
         } else {
-            Self::closed(y, complement)
+            Self::each(y, complement)
         }
     }
 
+    #[inline(always)]
+    fn from_series(y: V, l: V) -> Self {
+        let k = y.mul_add(l, y.splat(1.0)) * (1.0 / 3.0);
+        Self { h: y.mul_add(k, y.splat(1.0)), k, l }
+    }
+
+    /// Lane by lane, where at least one is beyond the series.
+    #[inline(never)]
+    fn each(y: V, complement: V) -> Self {
+        let (numbers, complements) = (y.to_array(), complement.to_array());
+        let factors = std::array::from_fn(|i| {
+            if numbers[i] < SERIES_LIMIT {
+                LogarithmFactors::from_series(numbers[i], series::<f64, 24>(numbers[i]))
+            } else {
+                LogarithmFactors::closed(numbers[i], complements[i])
+            }
+        });
+        let factors: [LogarithmFactors; crate::lanes::MAX_LANES] = factors;
+        let gather = |part: fn(&LogarithmFactors) -> f64| y.from_fn(|i| part(&factors[i]));
+        Self { h: gather(|f| f.h), k: gather(|f| f.k), l: gather(|f| f.l) }
+    }
+}
+
+impl LogarithmFactors {
     /// `h = ln((1 + sqrt Y)/sqrt(1 - Y))/sqrt Y`.
     fn closed(y: f64, complement: f64) -> Self {
         let root = y.sqrt();
@@ -37,15 +63,15 @@ impl LogarithmFactors {
 
 /// `sum_{j < TERMS} 3 y^j/(2j + 5)`, `TERMS` even: two interleaved Horner chains in `y^2`, which do not wait for each
 /// other.
-#[inline]
-fn series<const TERMS: usize>(y: f64) -> f64 {
+#[inline(always)]
+fn series<V: Lanes, const TERMS: usize>(y: V) -> V {
     let square = y * y;
-    let (mut even, mut odd) = (0.0, 0.0);
+    let (mut even, mut odd) = (y.splat(0.0), y.splat(0.0));
     for j in (0..TERMS / 2).rev() {
-        even = even * square + 3.0 / (4 * j + 5) as f64;
-        odd = odd * square + 3.0 / (4 * j + 7) as f64;
+        even = even.mul_add(square, y.splat(3.0 / (4 * j + 5) as f64));
+        odd = odd.mul_add(square, y.splat(3.0 / (4 * j + 7) as f64));
     }
-    even + y * odd
+    y.mul_add(odd, even)
 }
 
 #[cfg(test)]
@@ -63,7 +89,7 @@ mod tests {
     #[test]
     fn short_and_long_series_agree_at_the_switch() {
         let y = 0.02_f64;
-        let (short, long) = (super::series::<10>(y), super::series::<24>(y));
+        let (short, long) = (super::series::<f64, 10>(y), super::series::<f64, 24>(y));
         assert!((short - long).abs() < 1e-16, "{short} {long}");
     }
 

@@ -6,7 +6,8 @@ mod logarithm;
 use nalgebra::Matrix3;
 
 use crate::LawError;
-pub(crate) use kinematics::{Kinematics, all_finite};
+use crate::lanes::Lanes;
+pub(crate) use kinematics::{Kinematics, failure};
 pub(crate) use logarithm::LogarithmFactors;
 
 /// Physically motivated strain modes in the fibre frame `(e1, e2, e3)`, `e1` along the fibre \[-\], reference
@@ -18,15 +19,15 @@ pub(crate) use logarithm::LogarithmFactors;
 /// g3)`. The volume ratio is `ln J = I_elong + 2 I_comp`. Invariants after Charmetant, Vidal-Salle and Boisse,
 /// Composites Science and Technology 71 (2011) 1623.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StrainModes {
+pub struct StrainModes<V = f64> {
     /// Fibre elongation `I_elong` \[-\].
-    pub elongation: f64,
+    pub elongation: V,
     /// Transverse compaction `I_comp` \[-\], negative when the section shrinks.
-    pub compaction: f64,
+    pub compaction: V,
     /// Transverse distortion `I_dist = (D1, D2)` \[-\]; turning `(e2, e3)` by `w` turns it by `2 w`.
-    pub distortion: [f64; 2],
+    pub distortion: [V; 2],
     /// Longitudinal shear `I_sh = (g2, g3)` \[-\]; turning `(e2, e3)` by `w` turns it by `w`.
-    pub longitudinal_shear: [f64; 2],
+    pub longitudinal_shear: [V; 2],
 }
 
 impl StrainModes {
@@ -39,7 +40,9 @@ impl StrainModes {
     /// [`LawError::NonFiniteInput`], [`LawError::Inverted`] when `det F <= 0`, [`LawError::NonFiniteResponse`] on
     /// overflow.
     pub fn from_displacement_gradient(displacement_gradient: &Matrix3<f64>) -> Result<Self, LawError> {
-        Kinematics::new(displacement_gradient).map(|kinematics| kinematics.modes)
+        let gradient = rows(displacement_gradient);
+        let kinematics = Kinematics::new(&gradient);
+        if kinematics.valid { Ok(kinematics.modes) } else { Err(failure(&gradient)) }
     }
 
     /// Charmetant's distortion invariant `|I_dist| = 1/2 ln(x + sqrt(x^2 - 1))`, `x = (I1 I4 - I5)/(2 sqrt(I3 I4))`
@@ -63,13 +66,20 @@ impl StrainModes {
 }
 
 /// Length of a vector of two components; `sqrt` and not `hypot`, which is several times slower.
-#[inline]
-pub(crate) fn norm(vector: [f64; 2]) -> f64 {
+#[inline(always)]
+pub(crate) fn norm<V: Lanes>(vector: [V; 2]) -> V {
     dot(vector, vector).sqrt()
 }
 
 /// Scalar product of two vectors of two components.
-#[inline]
-pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+#[inline(always)]
+pub(crate) fn dot<V: Lanes>(a: [V; 2], b: [V; 2]) -> V {
     a[0] * b[0] + a[1] * b[1]
+}
+
+/// A matrix by its rows.
+#[inline(always)]
+pub(crate) fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    let m = matrix;
+    [[m.m11, m.m12, m.m13], [m.m21, m.m22, m.m23], [m.m31, m.m32, m.m33]]
 }

@@ -1,0 +1,287 @@
+//! The brick that averages the volume ratio.
+
+use pulp::Simd;
+use subrope_material::lanes::{Lanes, volume_growth};
+use subrope_material::mandel::{PAIRS, WEIGHTS};
+use subrope_material::{LaneResponse, Law, LawError};
+
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::kernel::{MANDEL, Pack, PointProducts, Stiffness};
+use super::mean_elongation::MeanTerms;
+use super::wide::Wide;
+use crate::contribution::Request;
+
+/// The volume ratio averaged over the element (what Abaqus calls C3D8): the law sees `F_bar = (J_bar/J)^(1/3) F`,
+/// `J_bar = sum(w J)/sum(w)`. Forces are the derivative of the energy of `F_bar`, so the tangent is symmetric whenever
+/// the law's is.
+///
+/// With `v = ln J`, `psi = 2/3 (ln J_bar - v)`, `C_bar = e^psi C`, `S* = e^psi S(C_bar)`, `s = S*:C/2`, `G = C^-1`:
+/// `S_eff = S* + 2/3 (w_J mean(s) - s) G` with `w_J = J/J_bar`, and the tangent follows by one more variation.
+#[derive(Clone, Copy, Debug)]
+pub struct MeanVolume;
+
+/// A pack between the two passes over the element.
+#[derive(Clone, Copy)]
+struct Half<'a, S: Simd> {
+    pack: Pack<'a, S, 8>,
+    /// `J - 1`.
+    dilation: Wide<S>,
+    /// `C`, Mandel.
+    right: [Wide<S>; 6],
+    /// `s`.
+    pressure: Wide<S>,
+    response: LaneResponse<Wide<S>>,
+}
+
+impl Formulation<8> for MeanVolume {
+    const NEEDS_FIBRE_TERM: bool = false;
+
+    #[inline(always)]
+    fn evaluate<L: Law, S: Simd, const SYMMETRIC: bool>(
+        simd: S,
+        input: &ElementInput<'_, 8, L>,
+        new: &mut [f64],
+        product: &mut PointProducts<8>,
+        out: &mut ElementResult<8>,
+    ) -> Result<(), ElementFailure> {
+        match S::F64_LANES {
+            8 => evaluate::<L, S, 1, SYMMETRIC>(simd, input, new, product, out),
+            4 => evaluate::<L, S, 2, SYMMETRIC>(simd, input, new, product, out),
+            2 => evaluate::<L, S, 4, SYMMETRIC>(simd, input, new, product, out),
+            _ => evaluate::<L, S, 8, SYMMETRIC>(simd, input, new, product, out),
+        }
+    }
+}
+
+/// With the eight points in `PACKS` packs.
+#[inline(always)]
+fn evaluate<L: Law, S: Simd, const PACKS: usize, const SYMMETRIC: bool>(
+    simd: S,
+    input: &ElementInput<'_, 8, L>,
+    new: &mut [f64],
+    product: &mut PointProducts<8>,
+    out: &mut ElementResult<8>,
+) -> Result<(), ElementFailure> {
+    let (zero, lanes) = (Wide::new(simd, 0.0), S::F64_LANES);
+    let (mut mean, mut volume) = (0.0, 0.0);
+    let pack = Pack::new(simd, &input.points[..lanes], &input.displacement);
+    let response = LaneResponse::zero(zero);
+    let mut halves = [Half { pack, dilation: zero, right: [zero; 6], pressure: zero, response }; PACKS];
+    for (number, Half { pack, dilation, right, .. }) in halves.iter_mut().enumerate() {
+        if number > 0 {
+            *pack = Pack::new(simd, &input.points[number * lanes..(number + 1) * lanes], &input.displacement);
+        }
+        *dilation = volume_growth(&pack.gradient);
+        *right = right_cauchy_green(&pack.gradient);
+        if let Some((lane, jacobian)) = (*dilation + 1.0).first_not_positive() {
+            return Err(ElementFailure::Law(number * lanes + lane, LawError::Inverted { jacobian }));
+        }
+        pack.integrate(*dilation, &mut mean);
+        pack.integrate(zero + 1.0, &mut volume);
+    }
+    mean /= volume;
+    if mean.is_nan() || mean <= -1.0 {
+        return Err(ElementFailure::MeanVolume(1.0 + mean));
+    }
+    let mut total = 0.0;
+    for (number, half) in halves.iter_mut().enumerate() {
+        half.evaluate_law(simd, input, number * lanes, mean, new)?;
+        half.pack.integrate(half.pressure, &mut total);
+        out.add_energies(&half.pack, &half.response);
+    }
+    let mut terms = MeanTerms::ZERO;
+    // Second variation of ln J_bar: the part that the mean itself carries.
+    terms.stiffness = -2.0 / 3.0 * total;
+    for (number, half) in halves.iter().enumerate() {
+        let pack = &half.pack;
+        let weight = (half.dilation + 1.0) * (1.0 / (1.0 + mean) / volume);
+        let split = VolumeSplit::new(half, weight * total);
+        out.keep_stress(number * lanes, &split.stress);
+        pack.add_force(&split.stress, pack.volume, &mut out.force);
+        if input.request == Request::Tangent {
+            let tangent = split.tangent(half);
+            let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
+            pack.add_stiffness::<SYMMETRIC>(&split.stress, &tangent, number == 0, stiffness);
+            let [row, column] = split.couplings(half);
+            pack.add_force(&split.inverse, pack.volume * weight, &mut terms.gradient);
+            pack.add_force(&row, pack.volume, &mut terms.stress_coupling);
+            pack.add_force(&column, pack.volume, &mut terms.strain_coupling);
+            pack.integrate(split.stiffness(half), &mut terms.stiffness);
+        }
+    }
+    if input.request == Request::Tangent {
+        terms.add_to::<S, SYMMETRIC>(simd, out);
+    }
+    Ok(())
+}
+
+impl<S: Simd> Half<'_, S> {
+    /// `S*`, `e^2psi` times the law's tangent at `C_bar`, and `s`.
+    #[inline(always)]
+    fn evaluate_law<L: Law>(
+        &mut self,
+        simd: S,
+        input: &ElementInput<'_, 8, L>,
+        first: usize,
+        mean: f64,
+        new: &mut [f64],
+    ) -> Result<(), ElementFailure> {
+        let psi = (-self.dilation.ln_1p() + mean.ln_1p()) * (2.0 / 3.0);
+        let grow = (psi * 0.5).map(f64::exp_m1);
+        let mut gradient = self.pack.gradient;
+        for (i, row) in gradient.iter_mut().enumerate() {
+            for h in row.iter_mut() {
+                *h = h.mul_add(grow, *h);
+            }
+            row[i] += grow;
+        }
+        input.call(simd, (first, self.pack.points.len()), &gradient, None, new, &mut self.response)?;
+        let factor = psi.map(f64::exp);
+        for stress in &mut self.response.second_piola {
+            *stress = *stress * factor;
+        }
+        self.pressure = dot6(&self.response.second_piola, &self.right) * 0.5;
+        for modulus in self.response.tangent.as_flattened_mut() {
+            *modulus = *modulus * factor * factor;
+        }
+        Ok(())
+    }
+}
+
+/// Effective stress of a pack and what its tangent is made of.
+struct VolumeSplit<S: Simd> {
+    stress: [Wide<S>; 6],
+    /// `G = C^-1`, gradient of `ln J` by `E`.
+    inverse: [Wide<S>; 6],
+    /// `D C`, `C D`, `C D C` of the law's tangent.
+    dc: [Wide<S>; 6],
+    cd: [Wide<S>; 6],
+    cdc: Wide<S>,
+    /// `sum(w s) J/(J_bar V)`: `2/3 share G` is the stress that the mean returns to the point.
+    share: Wide<S>,
+}
+
+impl<S: Simd> VolumeSplit<S> {
+    #[inline(always)]
+    fn new(half: &Half<'_, S>, share: Wide<S>) -> Self {
+        let (response, right) = (&half.response, &half.right);
+        let inverse = inverse_of(&half.pack.gradient, half.dilation + 1.0);
+        let back = (share - half.pressure) * (2.0 / 3.0);
+        let columns = &response.tangent;
+        let (mut dc, mut cd, mut stress) = (*right, *right, response.second_piola);
+        for i in 0..6 {
+            stress[i] = inverse[i].mul_add(back, stress[i]);
+            cd[i] = dot6(&columns[i], right);
+            let mut row = *right;
+            for j in 0..6 {
+                row[j] = columns[j][i];
+            }
+            dc[i] = dot6(&row, right);
+        }
+        Self { stress, inverse, cdc: dot6(&dc, right), dc, cd, share }
+    }
+
+    /// Columns of the effective tangent: `P = 1 - C G/3` takes `dE` to the isochoric part that the law sees.
+    #[inline(always)]
+    fn tangent(&self, half: &Half<'_, S>) -> [[Wide<S>; 6]; 6] {
+        let (g, s, law) = (&self.inverse, &half.response.second_piola, &half.response.tangent);
+        let both = self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0) + self.share * (2.0 / 3.0);
+        // Second variation of ln J: -G sym-odot G.
+        let turning = (self.share - half.pressure) * (4.0 / 3.0);
+        let mut out = *law;
+        for j in 0..6 {
+            for i in 0..6 {
+                let once = (self.dc[i] + s[i] * 2.0) * g[j] + g[i] * (self.cd[j] + s[j] * 2.0);
+                out[j][i] = law[j][i] - once * (1.0 / 3.0) + g[i] * g[j] * both - odot(g, i, j) * turning;
+            }
+        }
+        out
+    }
+
+    /// `d2W/dE d(ln J_bar)`, row and column version.
+    #[inline(always)]
+    fn couplings(&self, half: &Half<'_, S>) -> [[Wide<S>; 6]; 2] {
+        let along = self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0);
+        let mut out = [self.dc, self.cd];
+        for coupling in &mut out {
+            for i in 0..6 {
+                let own = half.response.second_piola[i] * (2.0 / 3.0) - self.inverse[i] * along;
+                coupling[i] = coupling[i] * (1.0 / 3.0) + own;
+            }
+        }
+        out
+    }
+
+    /// `d2W/d(ln J_bar)2`.
+    #[inline(always)]
+    fn stiffness(&self, half: &Half<'_, S>) -> Wide<S> {
+        self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0)
+    }
+}
+
+#[inline(always)]
+fn dot6<V: Lanes>(a: &[V; 6], b: &[V; 6]) -> V {
+    let mut sum = a[0] * b[0];
+    for i in 1..6 {
+        sum = a[i].mul_add(b[i], sum);
+    }
+    sum
+}
+
+/// `F` by its columns.
+#[inline(always)]
+fn deformation<V: Lanes>(h: &[[V; 3]; 3]) -> [[V; 3]; 3] {
+    let mut out = *h;
+    for i in 0..3 {
+        for j in 0..3 {
+            out[j][i] = if i == j { h[i][j] + 1.0 } else { h[i][j] };
+        }
+    }
+    out
+}
+
+/// Products of three vectors, Mandel: `C` from the columns of `F`, `C^-1` from the rows of `F^-1`.
+#[inline(always)]
+fn products<V: Lanes>(vectors: &[[V; 3]; 3]) -> [V; 6] {
+    let mut out = [vectors[0][0]; 6];
+    for (at, (i, j)) in PAIRS.into_iter().enumerate() {
+        let ([a, b, c], [x, y, z]) = (vectors[i], vectors[j]);
+        out[at] = (a * x + b * y + c * z) * WEIGHTS[at];
+    }
+    out
+}
+
+#[inline(always)]
+fn right_cauchy_green<V: Lanes>(h: &[[V; 3]; 3]) -> [V; 6] {
+    products(&deformation(h))
+}
+
+/// `C^-1` from the displacement gradient.
+#[inline(always)]
+fn inverse_of<V: Lanes>(h: &[[V; 3]; 3], jacobian: V) -> [V; 6] {
+    let f = deformation(h);
+    let one_by = jacobian.splat(1.0) / jacobian;
+    // Rows of F^-1: cofactors of the columns.
+    let mut inverse = f;
+    for i in 0..3 {
+        let (a, b) = (f[(i + 1) % 3], f[(i + 2) % 3]);
+        for k in 0..3 {
+            let (r, s) = ((k + 1) % 3, (k + 2) % 3);
+            inverse[i][k] = (a[r] * b[s] - a[s] * b[r]) * one_by;
+        }
+    }
+    products(&inverse)
+}
+
+/// Entry of the tensor of a Mandel vector.
+#[inline(always)]
+fn entry<V: Lanes>(g: &[V; 6], i: usize, j: usize) -> V {
+    if i == j { g[i] } else { g[MANDEL[i][j]] * std::f64::consts::FRAC_1_SQRT_2 }
+}
+
+/// Entry of the Mandel matrix of `dE -> sym(G dE G)`, `g` a Mandel vector.
+#[inline(always)]
+fn odot<V: Lanes>(g: &[V; 6], row: usize, column: usize) -> V {
+    let ((i, j), (k, l)) = (PAIRS[row], PAIRS[column]);
+    (entry(g, i, k) * entry(g, j, l) + entry(g, i, l) * entry(g, j, k)) * (0.5 * WEIGHTS[row] * WEIGHTS[column])
+}

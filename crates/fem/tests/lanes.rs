@@ -1,0 +1,238 @@
+//! Laws and elements in the lanes of a vector: the same answers as point by point, in every instruction set.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use pulp::{Arch, Scalar, Simd, WithSimd};
+use subrope_fem::Request;
+use subrope_fem::solid::{
+    ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume, PointGeometry, Wide,
+};
+use subrope_material::lanes::{Lanes, MAX_LANES};
+use subrope_material::{
+    BundleLaw, BundleParameters, Compaction, CompressibleNeoHooke, FibreNeoHooke, Friction, Hardening, LaneFailure,
+    LaneInput, LaneResponse, Law, ModeParameters, PointInput, Request as LawRequest, Response, StVenantKirchhoff,
+};
+
+/// Reproducible numbers between -1 and 1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn matrix(&mut self, size: f64) -> Matrix3<f64> {
+        Matrix3::from_fn(|_, _| size * self.next())
+    }
+}
+
+fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> BundleLaw {
+    let mode = |k, tau, hardening, x| ModeParameters::sliding(k, Friction { tau, hardening, x, mu });
+    BundleLaw::new(BundleParameters {
+        k_e: 2000.0,
+        k_ec: 100.0,
+        w_e: 0.005,
+        k_c: 60.0,
+        nu: 0.5,
+        compaction,
+        transverse: mode(15.0, 0.5, hardening[0], 2.0),
+        longitudinal: mode(20.0, 1.0, hardening[1], 0.0),
+    })
+    .unwrap()
+}
+
+fn bundles() -> Vec<BundleLaw> {
+    let linear = [Hardening::Linear { h: 0.1 }, Hardening::Linear { h: 0.0 }];
+    let saturating = Hardening::Saturating { h_inf: 0.4, kappa_s: 0.02 };
+    let elastic = BundleLaw::new(bundle(Compaction::Quadratic, linear, 0.0).parameters().without_friction()).unwrap();
+    vec![
+        elastic,
+        bundle(Compaction::Quadratic, linear, 0.0),
+        bundle(Compaction::Power { k_p: 300.0, m: 2.5 }, [saturating, linear[0]], 0.0),
+        bundle(Compaction::LockUp { z_lock: -0.2 }, [saturating; 2], 0.3),
+    ]
+}
+
+/// All lanes at once and one by one.
+struct Compare<'a, L> {
+    law: &'a L,
+    inputs: &'a [PointInput],
+    old: &'a [f64],
+}
+
+impl<L: Law> WithSimd for Compare<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let points = self.inputs.len().min(S::F64_LANES);
+        let witness = Wide::new(simd, 0.0);
+        let of = |lane: usize| &self.inputs[lane.min(points - 1)];
+        let entry = |i, j| witness.from_fn(|lane| of(lane).displacement_gradient[(i, j)]);
+        let elongation = witness.from_fn(|lane| of(lane).mean_elongation.unwrap_or(0.0));
+        let input = LaneInput {
+            points,
+            gradient: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+            mean_elongation: of(0).mean_elongation.map(|_| elongation),
+            time_increment: 1.0,
+            temperature: 293.15,
+        };
+        let n = self.law.state_len();
+        let mut new = vec![0.0; points * n];
+        let mut out = LaneResponse::zero(witness);
+        let found = self.law.evaluate_lanes(&input, &self.old[..points * n], &mut new, LawRequest::Tangent, &mut out);
+        for lane in 0..points {
+            let (mut state, mut single) = (vec![0.0; n], Response::default());
+            let old = &self.old[lane * n..(lane + 1) * n];
+            match self.law.evaluate(of(lane), old, &mut state, LawRequest::Tangent, &mut single) {
+                Err(source) => {
+                    assert_eq!(found, Err(LaneFailure { lane, source }));
+                    return;
+                }
+                Ok(()) if found.is_ok() => compare(&out, lane, &single, &new[lane * n..(lane + 1) * n], &state),
+                Ok(()) => {}
+            }
+        }
+        assert_eq!(found, Ok(()));
+    }
+}
+
+fn compare<S: Simd>(out: &LaneResponse<Wide<S>>, lane: usize, single: &Response, new: &[f64], state: &[f64]) {
+    let close = |found: Wide<S>, exact: f64, scale: f64, what: &str| {
+        let found = found.to_array()[lane];
+        assert!((found - exact).abs() <= 1e-12 * scale, "{what}, lane {lane}: {found:e} {exact:e}");
+    };
+    let scale = single.tangent.norm();
+    for i in 0..6 {
+        close(out.second_piola[i], single.second_piola[i], scale, "stress");
+        for j in 0..6 {
+            close(out.tangent[j][i], single.tangent[(i, j)], scale, "tangent");
+        }
+        close(out.fibre.stress_by_elongation[i], single.fibre.stress_by_elongation[i], scale, "coupling");
+    }
+    close(out.stored_energy, single.stored_energy, single.stored_energy.abs(), "energy");
+    assert_eq!(out.incremental_potential.is_some(), single.incremental_potential.is_some());
+    for (found, exact) in new.iter().zip(state) {
+        assert!((found - exact).abs() <= 1e-12 * (1.0 + exact.abs()), "state, lane {lane}: {found:e} {exact:e}");
+    }
+}
+
+fn compare_laws<L: Law>(law: &L, averaged: bool) {
+    let mut numbers = Numbers(7);
+    for case in 0..600 {
+        // Lanes of very different strain, so that they take different branches; some are inverted.
+        let size = |lane: usize| [1e-13, 1e-3, 0.02, 0.1, 0.3, 0.6, 1.0, 0.05][(lane * 5 + case) % 8];
+        let inputs: Vec<_> = (0..1 + case % MAX_LANES)
+            .map(|lane| {
+                let point = PointInput::new(numbers.matrix(size(lane)));
+                if averaged { point.with_mean_elongation(0.02 * numbers.next()) } else { point }
+            })
+            .collect();
+        let old: Vec<f64> = (0..inputs.len() * law.state_len())
+            .map(|at| if case % 3 == 0 || at % 7 == 0 { 0.0 } else { 0.02 * numbers.next().abs() })
+            .collect();
+        Arch::new().dispatch(Compare { law, inputs: &inputs, old: &old });
+        Simd::vectorize(Scalar, Compare { law, inputs: &inputs, old: &old });
+    }
+}
+
+#[test]
+fn lanes_answer_as_points_do() {
+    for law in bundles() {
+        compare_laws(&law, false);
+        compare_laws(&law, true);
+    }
+    compare_laws(&StVenantKirchhoff::isotropic(100.0, 0.3).unwrap(), false);
+    compare_laws(&CompressibleNeoHooke::new(100.0, 30.0).unwrap(), false);
+    compare_laws(&FibreNeoHooke::new(10.0, 40.0, 300.0).unwrap(), false);
+}
+
+#[test]
+fn a_number_that_is_missing_names_its_lane() {
+    let law = &bundles()[1];
+    let mut numbers = Numbers(3);
+    for bad in [f64::NAN, f64::INFINITY] {
+        for lane in 0..MAX_LANES {
+            let mut inputs: Vec<_> = (0..MAX_LANES).map(|_| PointInput::new(numbers.matrix(0.05))).collect();
+            inputs[lane].displacement_gradient[(1, 2)] = bad;
+            let old = vec![0.0; MAX_LANES * law.state_len()];
+            Arch::new().dispatch(Compare { law, inputs: &inputs, old: &old });
+            inputs[lane].displacement_gradient[(1, 2)] = 0.0;
+            let mut spoilt = old.clone();
+            spoilt[lane * law.state_len() + 2] = bad;
+            Arch::new().dispatch(Compare { law, inputs: &inputs, old: &spoilt });
+        }
+    }
+}
+
+/// One element in the instruction set it is dispatched to.
+struct Element<'a, F> {
+    input: &'a ElementInput<'a, 8, BundleLaw>,
+    formulation: std::marker::PhantomData<F>,
+}
+
+impl<F: Formulation<8>> WithSimd for Element<'_, F> {
+    type Output = (Result<(), ElementFailure>, ElementResult<8>, Vec<f64>);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut out = ElementResult::zero(8);
+        let mut new = vec![0.0; self.input.old.len()];
+        let mut product = [[[0.0; 8]; 3]; MAX_LANES];
+        let done = F::evaluate::<BundleLaw, S, false>(simd, self.input, &mut new, &mut product, &mut out);
+        (done, out, new)
+    }
+}
+
+/// Eight points with random gradients: no brick, but an algebra that must agree.
+fn points(numbers: &mut Numbers) -> Vec<PointGeometry<8>> {
+    let frame = Rotation3::from_scaled_axis(Vector3::new(0.3, -0.8, 0.4)).into_inner();
+    let mut point = || PointGeometry {
+        gradient: std::array::from_fn(|_| std::array::from_fn(|_| numbers.next())),
+        frame,
+        volume: 1.0 + 0.5 * numbers.next(),
+    };
+    (0..8).map(|_| point()).collect()
+}
+
+fn compare_elements<F: Formulation<8>>() {
+    let mut numbers = Numbers(11);
+    for law in &bundles()[..3] {
+        for _ in 0..20 {
+            let points = points(&mut numbers);
+            let old = vec![0.0; 8 * law.state_len()];
+            let input = ElementInput {
+                law,
+                points: &points,
+                displacement: std::array::from_fn(|_| std::array::from_fn(|_| 0.02 * numbers.next())),
+                old: &old,
+                time_increment: 1.0,
+                temperature: 293.15,
+                request: Request::Tangent,
+            };
+            let element = || Element::<F> { input: &input, formulation: std::marker::PhantomData };
+            let (done, wide, state) = Arch::new().dispatch(element());
+            let (same, narrow, expected) = Simd::vectorize(Scalar, element());
+            assert!(done.is_ok() && same.is_ok());
+            let flat = |of: &ElementResult<8>| of.stiffness.as_flattened().as_flattened().as_flattened().to_vec();
+            near(&flat(&wide), &flat(&narrow));
+            near(wide.force.as_flattened(), narrow.force.as_flattened());
+            near(&[wide.energies.stored], &[narrow.energies.stored]);
+            near(&state, &expected);
+        }
+    }
+}
+
+fn near(found: &[f64], expected: &[f64]) {
+    let scale = expected.iter().fold(0.0, |largest: f64, number| largest.max(number.abs()));
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= 1e-12 * scale, "{found:e} {expected:e}");
+    }
+}
+
+#[test]
+fn instruction_sets_agree() {
+    compare_elements::<Full>();
+    compare_elements::<MeanElongation>();
+    compare_elements::<MeanVolume>();
+}
