@@ -105,7 +105,7 @@ fn element(scene: &Scene, model: &RopeModel) -> PlanPart {
     let formulation = scene.element.formulation;
     let per_brick = model.mesh.frames.len() / model.mesh.mesh.cell_count().max(1);
     PlanPart::new("element", format!("{}, {per_brick} points a brick", formulation.word())).without_if(
-        matches!(formulation, Formulation::Hex8 | Formulation::Hex27),
+        !matches!(formulation, Formulation::Hex8MeanVolume | Formulation::Hex8MeanElongation),
         "averages over an element",
         "this formulation has none",
     )

@@ -8,7 +8,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use serde::Serialize;
 use subrope_fem::analysis::Analysis;
-use subrope_geometry::{CellKind, Strand, StrandAxis, rope, strand};
+use subrope_geometry::{Strand, StrandAxis, rope, strand};
 use subrope_io::{Column, HistoryWriter, IoError};
 
 use crate::analytic::LaidStrands;
@@ -139,7 +139,7 @@ impl Layers<'_> {
     /// Mean of the nodes between two layers \[mm\], level 0 at the low end.
     fn middle(&self, level: usize, mesh: &MeshModel, displacement: Option<&[f64]>) -> Vector3<f64> {
         let (first, count) = self.nodes;
-        let step = if self.strand.kind == CellKind::Hex27 { 2 } else { 1 };
+        let step = self.strand.kind.order();
         let nodes = first + level * step * count..first + (level * step + 1) * count;
         let place = |n: usize| {
             let moved = displacement.map(|u| Vector3::from_column_slice(&u[3 * n..3 * n + 3]));

@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 use subrope_contact::foot::Place;
 use subrope_contact::{Contact, contacts};
 use subrope_fem::analysis::Analysis;
-use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad9, quadrilateral};
+use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad8, Quad9, quadrilateral};
 
 use super::super::{ContactCells, ContactField};
 
@@ -126,6 +126,9 @@ impl<'a> FaceMeans<'a> {
 fn face_area(mesh: &Mesh, face: Face) -> f64 {
     match mesh.kind {
         CellKind::Hex8 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad4, 4>(&x)),
+        CellKind::Hex20 | CellKind::Hex20R => {
+            mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad8, 8>(&x))
+        }
         CellKind::Hex27 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad9, 9>(&x)),
     }
 }
