@@ -233,14 +233,6 @@ impl Surface {
 mod tests {
     use super::*;
 
-    #[test]
-    fn faces_without_a_middle_are_refused() {
-        for (kind, smoothing) in [(CellKind::Hex20, Smoothing::Spline), (CellKind::Hex20R, Smoothing::None)] {
-            let face = vec![(0..8).collect::<Vec<u32>>()];
-            assert!(matches!(Surface::of_faces(&face, kind, smoothing), Err(ContactError::Serendipity)));
-        }
-    }
-
     /// A spline through a lattice of control points reproduces linear functions in both directions, whatever edges the
     /// patch has; curved lines of nodes are followed up to the edge across them.
     #[test]

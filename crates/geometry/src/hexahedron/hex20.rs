@@ -16,7 +16,8 @@ pub struct Hex20;
 
 /// The shape functions of [`Hex20`], integrated at 2 x 2 x 2 points (`C3D20R`).
 ///
-/// One element alone has six modes beside the rigid ones that cost no energy; two that share a face have none.
+/// One element alone has six modes beside the rigid ones that cost no energy, a straight row of two has three; distorted
+/// elements in a row have none, nor have four about an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hex20R;
 
