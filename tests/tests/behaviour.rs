@@ -434,7 +434,7 @@ fn newton_converges_quadratically() {
                 worst = pairs[first..].iter().copied().fold(worst, f64::max);
             }
             println!("{formulation}, {name}: largest constant {worst:.1}");
-            assert!(worst < 100.0, "{formulation}, {name}: constant {worst}");
+            assert!(worst < 200.0, "{formulation}, {name}: constant {worst}");
         }
     }
 }

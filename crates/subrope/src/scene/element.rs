@@ -25,7 +25,7 @@ pub enum Formulation {
     Hex8MeanElongation,
     /// 20 nodes, 3x3x3 points (C3D20). No contact, no ropes.
     Hex20,
-    /// 20 nodes, 2x2x2 points (C3D20R). No contact, no ropes.
+    /// 20 nodes, 2x2x2 points (C3D20R): the cheapest of all until sliding localises, too soft then. No contact, no ropes.
     #[serde(rename = "hex20r")]
     Hex20R,
     /// 27 nodes, 3x3x3 points.
