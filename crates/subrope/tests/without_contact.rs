@@ -1,6 +1,6 @@
 //! A program built without contact: scenes with it are refused with their place, all others run.
 #![cfg(not(feature = "contact"))]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::path::Path;
 
