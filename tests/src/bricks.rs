@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use subrope_fem::solid::{Full, MeanElongation, MeanVolume, SolidBlock, SolidFields, SolidMesh};
 use subrope_fem::{Contribution, FemError};
-use subrope_geometry::{CellKind, Hex8, Hex27, Mesh};
+use subrope_geometry::{CellKind, Hex8, Hex20, Hex20R, Hex27, Mesh};
 use subrope_material::{EngineeringConstants, Law, StVenantKirchhoff};
 
 /// A brick and what it averages.
@@ -15,18 +15,28 @@ pub enum Brick {
     MeanVolume,
     /// Eight nodes, mean fibre elongation.
     MeanElongation,
+    /// 20 nodes, full integration.
+    Serendipity,
+    /// 20 nodes, 2 x 2 x 2 points.
+    Reduced,
     /// 27 nodes, full integration.
     Quadratic,
 }
 
 impl Brick {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Plain, Self::MeanVolume, Self::MeanElongation, Self::Quadratic];
+    pub const ALL: [Self; 6] =
+        [Self::Plain, Self::MeanVolume, Self::MeanElongation, Self::Serendipity, Self::Reduced, Self::Quadratic];
 
     /// Kind of cell.
     #[must_use]
     pub fn kind(self) -> CellKind {
-        if self == Self::Quadratic { CellKind::Hex27 } else { CellKind::Hex8 }
+        match self {
+            Self::Plain | Self::MeanVolume | Self::MeanElongation => CellKind::Hex8,
+            Self::Serendipity => CellKind::Hex20,
+            Self::Reduced => CellKind::Hex20R,
+            Self::Quadratic => CellKind::Hex27,
+        }
     }
 
     /// Whether a law can fill it.
@@ -51,6 +61,8 @@ pub fn brick<L: Law + 'static>(
         Brick::Plain => Box::new(SolidBlock::<8, L, Full>::new::<Hex8>(&solid, law)?),
         Brick::MeanVolume => Box::new(SolidBlock::<8, L, MeanVolume>::new::<Hex8>(&solid, law)?),
         Brick::MeanElongation => Box::new(SolidBlock::<8, L, MeanElongation>::new::<Hex8>(&solid, law)?),
+        Brick::Serendipity => Box::new(SolidBlock::<20, L, Full>::new::<Hex20>(&solid, law)?),
+        Brick::Reduced => Box::new(SolidBlock::<20, L, Full>::new::<Hex20R>(&solid, law)?),
         Brick::Quadratic => Box::new(SolidBlock::<27, L, Full>::new::<Hex27>(&solid, law)?),
     })
 }

@@ -16,7 +16,7 @@ pub use bodies::{Bodies, Body, rigid};
 pub use bricks::{Brick, brick, constant_frames, fields_of, peer_law};
 pub use compare::{Worst, close, matrix_close, relative, scientific};
 pub use dense::Dense;
-pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity};
+pub use meshes::{Lattice, elevated, patch_cube, renumbered, rotated_connectivity, serendipity};
 pub use problem::{Problem, Recorder, Row, StepBuilder};
 pub use rope::{Run, SET_C, rod_on_strand, run_scene, run_with_files, scene, scene_file, short_rope, try_run};
 pub use wires::{Middle, Wires};

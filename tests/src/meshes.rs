@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use subrope_geometry::{CellKind, Face, Hex8, Hex27, Hexahedron, Mesh};
 
-/// A structured block of `cells` bricks along three parameters that run from 0 to 1.
+/// A structured block of `cells` bricks along three parameters that run from 0 to 1. Bricks of 20 nodes leave the nodes in the
+/// middle of faces and bricks to nobody.
 #[derive(Clone, Copy, Debug)]
 pub struct Lattice {
     /// Bricks along each parameter.
@@ -22,7 +23,7 @@ impl Lattice {
     }
 
     fn order(self) -> usize {
-        if self.kind == CellKind::Hex27 { 2 } else { 1 }
+        self.kind.order()
     }
 
     /// Nodes along each parameter.
@@ -61,10 +62,7 @@ impl Lattice {
             let step = xi.map(|x| ((x + 1.0) * 0.5 * order as f64).round() as usize);
             self.node([at[0] * order + step[0], at[1] * order + step[1], at[2] * order + step[2]])
         };
-        match self.kind {
-            CellKind::Hex8 => Hex8::NODES.iter().map(|xi| place(*xi)).collect(),
-            CellKind::Hex27 => Hex27::NODES.iter().map(|xi| place(*xi)).collect(),
-        }
+        natural_nodes(self.kind).iter().map(|xi| place(*xi)).collect()
     }
 
     /// Nodes of the plane where parameter `axis` is 0 (`end` false) or 1 (`end` true).
@@ -169,6 +167,15 @@ pub fn elevated(mesh: &Mesh) -> Mesh {
     Mesh::new(CellKind::Hex27, points, cells)
 }
 
+/// 27-node bricks without the nodes in the middle of their faces and of themselves, as 20-node bricks of `kind`.
+#[must_use]
+pub fn serendipity(mesh: &Mesh, kind: CellKind) -> Mesh {
+    let cells = mesh.cells.chunks_exact(27).flat_map(|cell| cell[..20].to_vec()).collect();
+    let mut out = Mesh { node_sets: mesh.node_sets.clone(), ..Mesh::new(kind, mesh.points.clone(), cells) };
+    out.drop_unused_points();
+    out
+}
+
 /// The same mesh with its nodes numbered from the last to the first: new index of node n is `count - 1 - n`.
 #[must_use]
 pub fn renumbered(mesh: &Mesh) -> Mesh {
@@ -196,8 +203,6 @@ pub fn rotated_connectivity(mesh: &Mesh) -> Mesh {
 }
 
 fn natural_nodes(kind: CellKind) -> Vec<[f64; 3]> {
-    match kind {
-        CellKind::Hex8 => Hex8::NODES.to_vec(),
-        CellKind::Hex27 => Hex27::NODES.to_vec(),
-    }
+    // Bricks of 8 and of 20 nodes have the first of those of 27.
+    Hex27::NODES[..kind.nodes()].to_vec()
 }

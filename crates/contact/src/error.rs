@@ -22,6 +22,11 @@ pub enum ContactError {
         /// Nodes needed.
         needed: usize,
     },
+    /// Faces of 20-node bricks.
+    #[error(
+        "the faces of 20-node bricks have no node in the middle, which a smooth surface needs: take bricks of 8 or 27"
+    )]
+    Serendipity,
     /// More than two faces at an edge, or two with opposite normals.
     #[error("more than two faces of the surface meet at the edge between nodes {} and {}, or their normals disagree", nodes[0], nodes[1])]
     Branching {

@@ -36,7 +36,7 @@ impl Surface {
     /// A surface of faces of a mesh.
     ///
     /// # Errors
-    /// [`ContactError::NoFace`] when a face does not exist; [`ContactError::Branching`] when three faces share an edge;
+    /// [`ContactError::NoFace`] when a face does not exist; [`ContactError::Serendipity`] for cells of 20 nodes; [`ContactError::Branching`] when three faces share an edge;
     /// [`ContactError::Irregular`] when a spline meets an inner node where not four faces meet.
     pub fn new(mesh: &Mesh, faces: &[Face], smoothing: Smoothing) -> Result<Self, ContactError> {
         let mut lists = Vec::with_capacity(faces.len());
@@ -51,9 +51,12 @@ impl Surface {
     /// the faces of a mesh, corners counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`ContactError::FaceNodes`] when a face has too few nodes; as [`Surface::new`].
+    /// [`ContactError::Serendipity`] for cells of 20 nodes; [`ContactError::FaceNodes`] when a face has too few nodes; as [`Surface::new`].
     pub fn of_faces(faces: &[Vec<u32>], kind: CellKind, smoothing: Smoothing) -> Result<Self, ContactError> {
-        let needed = if kind == CellKind::Hex8 { 4 } else { 9 };
+        if kind.is_serendipity() {
+            return Err(ContactError::Serendipity);
+        }
+        let needed = kind.face_nodes();
         if let Some((face, list)) = faces.iter().enumerate().find(|(_, list)| list.len() < needed) {
             return Err(ContactError::FaceNodes { face, found: list.len(), needed });
         }
@@ -64,7 +67,7 @@ impl Surface {
                     faces.iter().zip(0..).map(|(l, f)| ([l[0], l[1], l[2], l[3]], f)).collect();
                 Self::spline(&quads)
             }
-            (Smoothing::Spline, CellKind::Hex27) => Self::spline(&quarters(faces)),
+            (Smoothing::Spline, _) => Self::spline(&quarters(faces)),
         }
     }
 

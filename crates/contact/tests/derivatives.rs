@@ -184,3 +184,11 @@ fn a_rigid_motion_of_both_bodies_slips_nothing_and_turns_the_forces() {
         assert!((f - g).norm() < 1e-9 * norm(&force));
     }
 }
+
+#[test]
+fn faces_without_a_middle_are_refused() {
+    for (kind, smoothing) in [(CellKind::Hex20, Smoothing::Spline), (CellKind::Hex20R, Smoothing::None)] {
+        let refused = subrope_contact::Surface::of_faces(&[(0..8).collect()], kind, smoothing);
+        assert!(matches!(refused, Err(subrope_contact::ContactError::Serendipity)));
+    }
+}

@@ -149,6 +149,12 @@ pub enum GeometryError {
     /// Strands on a core are flattened against each other, which they do not touch.
     #[error("strands around a core cannot be flattened against each other")]
     CompactionOnCore,
+    /// Strands of a rope are laid by the smooth surfaces through the nodes of their faces.
+    #[error("strands of {nodes}-node bricks make no rope: their faces have no node in the middle for a smooth surface")]
+    NoSmoothSurface {
+        /// Nodes per cell.
+        nodes: usize,
+    },
     /// No lay angle from 0 to 60 deg, or no compaction, lets the strands touch at this outer diameter.
     #[error("the outer diameter {outer_diameter} mm must lie between {least} and {greatest} mm")]
     OuterDiameter {

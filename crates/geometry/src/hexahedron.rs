@@ -1,11 +1,13 @@
 //! The isoparametric map of hexahedra: shape functions, quadrature, Jacobian, physical gradients.
 
+mod hex20;
 mod hex27;
 mod hex8;
 mod map;
 mod quadrature;
 
 pub use hex8::Hex8;
+pub use hex20::{Hex20, Hex20R};
 pub use hex27::Hex27;
 pub use map::{MappedPoint, jacobian, map_point, position};
 pub use quadrature::QuadraturePoint;
@@ -28,6 +30,6 @@ pub trait Hexahedron<const N: usize>: Send + Sync + 'static {
     /// Derivatives dN_a/dxi_i at `xi`, index `[i][a]`.
     fn gradient(xi: [f64; 3]) -> [[f64; N]; 3];
 
-    /// Gauss points of full integration (2 x 2 x 2 or 3 x 3 x 3), xi_1 running fastest, xi_3 slowest.
+    /// Gauss points (2 x 2 x 2 or 3 x 3 x 3; of full integration, but for [`Hex20R`]), xi_1 running fastest, xi_3 slowest.
     fn quadrature() -> &'static [QuadraturePoint];
 }

@@ -1,6 +1,7 @@
 //! Hexahedral meshes with named node sets, element sets and surfaces.
 
 mod faces;
+mod unused;
 mod validate;
 
 pub use faces::exterior_faces;
@@ -14,16 +15,21 @@ use std::collections::BTreeMap;
 pub enum CellKind {
     /// Trilinear brick of eight nodes (`C3D8`, VTK cell type 12).
     Hex8,
+    /// Quadratic serendipity brick of 20 nodes, 3 x 3 x 3 integration points (`C3D20`, VTK cell type 25).
+    Hex20,
+    /// The same with 2 x 2 x 2 integration points (`C3D20R`, VTK cell type 25).
+    Hex20R,
     /// Triquadratic brick of 27 nodes (VTK cell type 29).
     Hex27,
 }
 
 impl CellKind {
-    /// Nodes per cell: 8 or 27.
+    /// Nodes per cell: 8, 20 or 27.
     #[inline]
     pub const fn nodes(self) -> usize {
         match self {
             Self::Hex8 => 8,
+            Self::Hex20 | Self::Hex20R => 20,
             Self::Hex27 => 27,
         }
     }
@@ -32,16 +38,32 @@ impl CellKind {
     #[inline]
     pub const fn points(self) -> usize {
         match self {
-            Self::Hex8 => 8,
-            Self::Hex27 => 27,
+            Self::Hex8 | Self::Hex20R => 8,
+            Self::Hex20 | Self::Hex27 => 27,
         }
     }
 
-    /// Nodes per face: 4 or 9.
+    /// Degree of the shape functions along an edge: 1 or 2.
+    #[inline]
+    pub const fn order(self) -> usize {
+        match self {
+            Self::Hex8 => 1,
+            Self::Hex20 | Self::Hex20R | Self::Hex27 => 2,
+        }
+    }
+
+    /// Whether faces and cell have no node in their middle, although edges have.
+    #[inline]
+    pub const fn is_serendipity(self) -> bool {
+        matches!(self, Self::Hex20 | Self::Hex20R)
+    }
+
+    /// Nodes per face: 4, 8 or 9.
     #[inline]
     pub const fn face_nodes(self) -> usize {
         match self {
             Self::Hex8 => 4,
+            Self::Hex20 | Self::Hex20R => 8,
             Self::Hex27 => 9,
         }
     }

@@ -2,10 +2,12 @@
 
 mod map;
 mod quad4;
+mod quad8;
 mod quad9;
 
 pub use map::{SurfacePoint, face_area, map_surface_point, surface_area};
 pub use quad4::Quad4;
+pub use quad8::Quad8;
 pub use quad9::Quad9;
 
 pub(crate) use quad9::LATTICE;
@@ -21,7 +23,7 @@ pub struct FacePoint {
 
 /// A quadrilateral of `N` nodes on the natural coordinates xi in \[-1, 1\]^2.
 ///
-/// Node order: corners counter-clockwise, mid-sides (01, 12, 23, 30), centre, as in [`crate::CellKind::face`].
+/// Node order: corners counter-clockwise, mid-sides (01, 12, 23, 30), centre (of nine nodes), as in [`crate::CellKind::face`].
 pub trait Quadrilateral<const N: usize>: Send + Sync + 'static {
     /// Natural coordinates of the nodes.
     const NODES: [[f64; 2]; N];

@@ -7,7 +7,7 @@ pub use angles::{AngleStatistics, fibre_angles};
 pub use cell::CellQuality;
 
 use crate::hexahedron::jacobian;
-use crate::{CellKind, GeometryError, Hex8, Hex27, Hexahedron, Mesh};
+use crate::{CellKind, GeometryError, Hex8, Hex20, Hex27, Hexahedron, Mesh};
 
 /// A measure and the label of the cell where it is worst.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +41,10 @@ pub fn cell_qualities(mesh: &Mesh) -> Result<Vec<CellQuality>, GeometryError> {
     let cells = 0..mesh.cell_count();
     match mesh.kind {
         CellKind::Hex8 => cells.map(|e| Ok(CellQuality::new::<Hex8, 8>(&mesh.checked_cell_points(e)?))).collect(),
+        // Of 20 nodes too with the points of full integration: 2 x 2 x 2 do not integrate the determinant of their map.
+        CellKind::Hex20 | CellKind::Hex20R => {
+            cells.map(|e| Ok(CellQuality::new::<Hex20, 20>(&mesh.checked_cell_points(e)?))).collect()
+        }
         CellKind::Hex27 => cells.map(|e| Ok(CellQuality::new::<Hex27, 27>(&mesh.checked_cell_points(e)?))).collect(),
     }
 }
@@ -74,14 +78,15 @@ fn worst(
     Some(Worst { value, cell_label: mesh.cell_label(cell) })
 }
 
-/// Volume of a mesh \[mm^3\], integrated with the quadrature of its cells (exact for eight nodes; for 27 nodes of
-/// degree up to five in each coordinate, as their map has).
+/// Volume of a mesh \[mm^3\], integrated with the quadrature of its cells (exact for eight nodes; for 20 and 27
+/// nodes of degree up to five in each coordinate, as their map has; 3 x 3 x 3 points whatever the rule of 20 nodes).
 ///
 /// # Errors
 /// As [`cell_qualities`].
 pub fn volume(mesh: &Mesh) -> Result<f64, GeometryError> {
     match mesh.kind {
         CellKind::Hex8 => integrate::<Hex8, 8>(mesh),
+        CellKind::Hex20 | CellKind::Hex20R => integrate::<Hex20, 20>(mesh),
         CellKind::Hex27 => integrate::<Hex27, 27>(mesh),
     }
 }
@@ -106,6 +111,7 @@ fn integrate<H: Hexahedron<N>, const N: usize>(mesh: &Mesh) -> Result<f64, Geome
 pub fn inverted_cells(mesh: &Mesh) -> Result<Vec<(u64, f64)>, GeometryError> {
     match mesh.kind {
         CellKind::Hex8 => find_inverted::<Hex8, 8>(mesh),
+        CellKind::Hex20 | CellKind::Hex20R => find_inverted::<Hex20, 20>(mesh),
         CellKind::Hex27 => find_inverted::<Hex27, 27>(mesh),
     }
 }

@@ -123,9 +123,13 @@ impl Rope {
     /// Checks the parameters that need no computation.
     ///
     /// # Errors
-    /// The first parameter out of range; [`GeometryError::CompactionOnCore`]; [`GeometryError::Undetermined`] when an
+    /// The first parameter out of range; [`GeometryError::NoSmoothSurface`] for 20-node bricks;
+    /// [`GeometryError::CompactionOnCore`]; [`GeometryError::Undetermined`] when an
     /// outer diameter is to give the lay or the compaction of strands that do not touch each other, or both.
     pub fn validate(&self) -> Result<(), GeometryError> {
+        if self.kind.is_serendipity() {
+            return Err(GeometryError::NoSmoothSurface { nodes: self.kind.nodes() });
+        }
         check::count(Parameter::Strands, self.strands, 2)?;
         check::positive(Parameter::Length, self.length)?;
         check::count(Parameter::Layers, self.layers, 1)?;

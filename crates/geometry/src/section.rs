@@ -81,7 +81,8 @@ impl Section {
     }
 
     /// The mesh of a section of radius `radius` \[mm\]: quad4 for [`CellKind::Hex8`], quad9 with curved outer edges
-    /// (their middle nodes as far from the centre as their ends) for [`CellKind::Hex27`].
+    /// (their middle nodes as far from the centre as their ends) for the quadratic bricks; those of 20 nodes do without the
+    /// nodes in the middle of its cells.
     ///
     /// # Errors
     /// A parameter out of range, too many nodes, or a core so large that a cell folds.
@@ -99,7 +100,7 @@ impl Section {
 
     fn check_size(&self, kind: CellKind) -> Result<(), GeometryError> {
         let cells = self.cell_count() as u128;
-        let points = if kind == CellKind::Hex27 { 4 * cells } else { cells } + 4 * self.core_cells as u128 + 1;
+        let points = cells * (kind.order() * kind.order()) as u128 + 4 * self.core_cells as u128 + 1;
         if points > u128::from(u32::MAX) { Err(GeometryError::TooLarge { points, cells }) } else { Ok(()) }
     }
 }

@@ -150,17 +150,22 @@ impl Strand {
     pub(crate) fn mesh_of(&self, mut section: crate::SectionMesh) -> Result<Mesh, GeometryError> {
         self.validate()?;
         self.axis.check_radius(section.outer_radius(), self.line_rate(), self.ends)?;
-        let mut mesh = sweep::sweep(self, &section);
+        let (mut mesh, kept) = sweep::sweep(self, &section);
         let prismatic = matches!(self.axis, StrandAxis::Straight(_)) && self.line_rate() == 0.0;
         if self.section.area == SectionArea::Exact && !prismatic {
-            self.match_volume(&mut section, &mut mesh)?;
+            self.match_volume(&mut section, &mut mesh, &kept)?;
         }
         crate::quality::check_orientation(&mesh)?;
         Ok(mesh)
     }
 
     /// Scales the sections until the volume of the mesh is that of the strand.
-    fn match_volume(&self, section: &mut crate::SectionMesh, mesh: &mut Mesh) -> Result<(), GeometryError> {
+    fn match_volume(
+        &self,
+        section: &mut crate::SectionMesh,
+        mesh: &mut Mesh,
+        kept: &[u32],
+    ) -> Result<(), GeometryError> {
         // The volume is close to quadratic in the scale: each pass gains several digits.
         for _ in 0..20 {
             let factor = (self.volume() / crate::quality::volume(mesh)?).sqrt();
@@ -169,7 +174,8 @@ impl Strand {
             }
             section.scale(factor);
             self.axis.check_radius(section.outer_radius(), self.line_rate(), self.ends)?;
-            mesh.points = sweep::points(self, section);
+            let all = sweep::points(self, section);
+            mesh.points = kept.iter().map(|&node| all[node as usize]).collect();
         }
         Ok(())
     }
@@ -183,7 +189,7 @@ impl Strand {
     }
 
     fn check_size(&self) -> Result<(), GeometryError> {
-        let order = if self.kind == CellKind::Hex27 { 2 } else { 1 };
+        let order = self.kind.order() as u128;
         let (n, m) = (self.section.core_cells as u128 * order, self.section.rings as u128 * order);
         let per_level = (n + 1) * (n + 1) + 4 * n * m;
         let points = per_level * (self.layers as u128 * order + 1);

@@ -1,7 +1,7 @@
 //! The structured grid of nodes on the surface of a strand.
 
+use crate::Strand;
 use crate::spline::cubic_weights;
-use crate::{CellKind, Strand};
 use nalgebra::Vector3;
 
 /// Nodes on the surface of a strand: rings one above the other, closed around.
@@ -67,14 +67,29 @@ impl SurfaceGrid {
 
 impl Strand {
     /// The grid of surface nodes in the numbering of [`Strand::mesh`]. 27-node bricks have their middle nodes in it:
-    /// twice as many nodes around, and twice as many levels less one.
+    /// twice as many nodes around, and twice as many levels less one. 20-node bricks have only their corners in it, since
+    /// their faces have no node in the middle.
     pub fn surface_grid(&self) -> SurfaceGrid {
-        let order = if self.kind == CellKind::Hex27 { 2 } else { 1 };
+        if self.kind.is_serendipity() {
+            return self.corner_grid();
+        }
+        let order = self.kind.order();
         let (side, rings) = (self.section.core_cells * order, self.section.rings * order);
         let (around, levels) = (4 * side, self.layers * order + 1);
         // The outer ring comes last on every level.
         let per_level = (side + 1) * (side + 1) + around * rings;
         let ring = |level: usize| (level + 1) * per_level - around..(level + 1) * per_level;
+        SurfaceGrid { around, levels, nodes: (0..levels).flat_map(ring).map(|node| node as u32).collect() }
+    }
+
+    /// The grid of the corners of 20-node bricks.
+    fn corner_grid(&self) -> SurfaceGrid {
+        let (n, m) = (self.section.core_cells, self.section.rings);
+        let (around, levels, cells) = (4 * n, self.layers + 1, n * (n + 4 * m));
+        // Levels of corners have all nodes of a section but those in the middle of its cells; those between have the corners.
+        let corners = (n + 1) * (n + 1) + around * m;
+        let level = (2 * n + 1) * (2 * n + 1) + 4 * around * m - cells;
+        let ring = |l: usize| (0..around).map(move |q| l * (level + corners) + level - 2 * around + 2 * q);
         SurfaceGrid { around, levels, nodes: (0..levels).flat_map(ring).map(|node| node as u32).collect() }
     }
 }

@@ -5,7 +5,9 @@
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use subrope_geometry::quadrilateral::{face_area, map_surface_point};
-use subrope_geometry::{CellKind, Hex8, Hex27, Hexahedron, Quad4, Quad9, Quadrilateral, map_point};
+use subrope_geometry::{
+    CellKind, Hex8, Hex20, Hex20R, Hex27, Hexahedron, Quad4, Quad8, Quad9, Quadrilateral, map_point,
+};
 
 const XI: [f64; 3] = [0.31, -0.47, 0.83];
 
@@ -38,13 +40,15 @@ fn check_kronecker<H: Hexahedron<N>, const N: usize>() {
 #[test]
 fn shape_functions_at_nodes_are_kronecker() {
     check_kronecker::<Hex8, 8>();
+    check_kronecker::<Hex20, 20>();
+    check_kronecker::<Hex20R, 20>();
     check_kronecker::<Hex27, 27>();
 }
 
 /// The Gauss rule with L points per direction integrates x^i y^j z^k, i, j, k <= 2 L - 1, exactly.
 #[test]
 fn quadrature_is_exact_to_its_degree() {
-    for (rule, degree) in [(Hex8::quadrature(), 3), (Hex27::quadrature(), 5)] {
+    for (rule, degree) in [(Hex8::quadrature(), 3), (Hex20R::quadrature(), 3), (Hex27::quadrature(), 5)] {
         let exact = |n: i32| {
             if n % 2 == 0 { 2.0 / f64::from(n + 1) } else { 0.0 }
         };
@@ -89,6 +93,8 @@ fn nodes_of_27_follow_vtk() {
         &[0, 1, 2, 3, 4, 5, 6, 7],
     ];
     assert_eq!(Hex27::NODES[..8], Hex8::NODES[..]);
+    assert_eq!(Hex27::NODES[..20], Hex20::NODES[..]);
+    assert_eq!(Hex20R::NODES, Hex20::NODES);
     for (node, corners) in (8..).zip(means) {
         let sum: Vector3<f64> = corners.iter().map(|&c| Vector3::from(Hex8::NODES[c])).sum();
         assert_eq!(Vector3::from(Hex27::NODES[node]), sum / corners.len() as f64, "node {node}");
@@ -112,6 +118,7 @@ fn faces_point_outwards_and_carry_their_nodes() {
         let nine = CellKind::Hex27.face(face).unwrap();
         assert_eq!(nine[..4], *four);
         let nodes: [Vector3<f64>; 9] = std::array::from_fn(|a| Hex27::NODES[nine[a]].into());
+        assert_eq!(nine[..8], *CellKind::Hex20.face(face).unwrap());
         for (xi, node) in Quad9::NODES.into_iter().zip(nodes) {
             let bilinear = map_surface_point::<Quad4, 4>(&nodes[..4].try_into().unwrap(), xi).position;
             assert!((bilinear - node).norm() < 1e-15, "face {face}");
@@ -164,18 +171,47 @@ fn quadrilaterals_are_kronecker_and_integrate_areas() {
     for (b, &xi) in Quad4::NODES.iter().enumerate() {
         assert!(Quad4::shape(xi).iter().enumerate().all(|(a, &n)| n == f64::from(u8::from(a == b))));
     }
+    for (b, &xi) in Quad8::NODES.iter().enumerate() {
+        assert_eq!(xi, Quad9::NODES[b]);
+        assert!(Quad8::shape(xi).iter().enumerate().all(|(a, &n)| n == f64::from(u8::from(a == b))));
+    }
     for (b, &xi) in Quad9::NODES.iter().enumerate() {
         assert!(Quad9::shape(xi).iter().enumerate().all(|(a, &n)| n == f64::from(u8::from(a == b))));
     }
     let trapezium = [[0.0, 0.0], [4.0, 0.0], [3.0, 2.0], [1.0, 2.0]].map(|[x, y]| Vector3::new(x, y, 0.5 * x));
     assert!((face_area::<Quad4, 4>(&trapezium) - 6.0 * 1.25_f64.sqrt()).abs() < 1e-13);
+    check_slopes::<Quad8, 8>();
+    check_slopes::<Quad9, 9>();
+}
+
+fn check_slopes<Q: Quadrilateral<N>, const N: usize>() {
     let h = 1e-6;
-    let [slope_x, slope_y] = Quad9::gradient([0.2, -0.6]);
-    for a in 0..slope_x.len() {
-        let dx = (Quad9::shape([0.2 + h, -0.6])[a] - Quad9::shape([0.2 - h, -0.6])[a]) / (2.0 * h);
-        let dy = (Quad9::shape([0.2, -0.6 + h])[a] - Quad9::shape([0.2, -0.6 - h])[a]) / (2.0 * h);
+    let [slope_x, slope_y] = Q::gradient([0.2, -0.6]);
+    for a in 0..N {
+        let dx = (Q::shape([0.2 + h, -0.6])[a] - Q::shape([0.2 - h, -0.6])[a]) / (2.0 * h);
+        let dy = (Q::shape([0.2, -0.6 + h])[a] - Q::shape([0.2, -0.6 - h])[a]) / (2.0 * h);
         assert!((slope_x[a] - dx).abs() < 1e-9 && (slope_y[a] - dy).abs() < 1e-9);
     }
+}
+
+/// Shares of a uniform load on a square of eight nodes, as every textbook has them.
+#[test]
+fn corners_of_a_serendipity_face_pull_against_a_load() {
+    let mut shares = [0.0; 8];
+    for point in Quad8::quadrature() {
+        shares.iter_mut().zip(Quad8::shape(point.xi)).for_each(|(s, n)| *s += 0.25 * point.weight * n);
+    }
+    for (a, share) in shares.into_iter().enumerate() {
+        assert!((share - if a < 4 { -1.0 / 12.0 } else { 1.0 / 3.0 }).abs() < 1e-15, "{shares:?}");
+    }
+}
+
+/// The serendipity map has all quadratics and the products of two or three coordinates, quadratic in one of them at most.
+#[test]
+fn twenty_nodes_reproduce_quadratics() {
+    let field = |[x, y, z]: [f64; 3]| 1.0 + x * x - 2.0 * y * z + 0.3 * x * y * z + 0.7 * x * x * y - z * z * x * y;
+    let value: f64 = Hex20::NODES.iter().zip(Hex20::shape(XI)).map(|(&node, n)| n * field(node)).sum();
+    assert!((value - field(XI)).abs() < 1e-15, "{value} {}", field(XI));
 }
 
 proptest! {
@@ -184,6 +220,7 @@ proptest! {
     #[test]
     fn shape_functions_hold_everywhere(x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) {
         check_shape::<Hex8, 8>([x, y, z]);
+        check_shape::<Hex20, 20>([x, y, z]);
         check_shape::<Hex27, 27>([x, y, z]);
     }
 
@@ -193,6 +230,7 @@ proptest! {
     ) {
         let f = Matrix3::from_row_slice(&f);
         check_affine_map::<Hex8, 8>(&f, &c.into(), XI);
+        check_affine_map::<Hex20, 20>(&f, &c.into(), XI);
         check_affine_map::<Hex27, 27>(&f, &c.into(), XI);
     }
 }

@@ -356,6 +356,8 @@ fn compaction_keeps_the_area() {
 #[test]
 fn a_slice_and_its_images_are_the_rope() {
     let flat = Rope { compaction: Compaction::Degree(1.0), ..laid(LayBy::Angle(0.35), Handedness::Left) };
+    let serendipity = Rope { kind: CellKind::Hex20R, ..laid(LayBy::Length(50.0), Handedness::Right) };
+    assert!(matches!(serendipity.mesh(), Err(GeometryError::NoSmoothSurface { nodes: 20 })));
     let quadratic = Rope { kind: CellKind::Hex27, layers: 7, ..laid(LayBy::Length(50.0), Handedness::Right) };
     for rope in [flat, quadratic] {
         let rope = Rope { origin: StrandOrigin::Bottom, ..rope };

@@ -83,7 +83,7 @@ fn errors(kind: CellKind, lines: MeshLines, area: SectionArea) -> [(f64, f64); 3
 #[test]
 fn volumes_and_lateral_areas_converge() {
     for lines in [MeshLines::Axis, MeshLines::Yarns] {
-        for (kind, order) in [(CellKind::Hex8, 2.0), (CellKind::Hex27, 4.0)] {
+        for (kind, order) in [(CellKind::Hex8, 2.0), (CellKind::Hex20, 4.0), (CellKind::Hex27, 4.0)] {
             let e = errors(kind, lines, SectionArea::Inscribed);
             let rate = |a: f64, b: f64| (a / b).log2();
             assert!(rate(e[1].0, e[2].0) > order - 0.1, "{kind:?} {lines:?} volume {e:?}");
@@ -127,7 +127,7 @@ fn exact_volume_holds_for_every_axis_and_line() {
     let helical = [StrandEnds::Normal, StrandEnds::Flat]
         .into_iter()
         .flat_map(|ends| [MeshLines::Axis, MeshLines::Yarns].map(|lines| rope_strand(ends, lines, -30.0)));
-    let straight = [CellKind::Hex8, CellKind::Hex27]
+    let straight = [CellKind::Hex8, CellKind::Hex20, CellKind::Hex20R, CellKind::Hex27]
         .into_iter()
         .map(|kind| Strand { lines: MeshLines::Yarns, ..strand(kind, SectionArea::Exact, 1) });
     for strand in helical.chain(straight) {
@@ -209,6 +209,42 @@ fn origin_axis_and_kind() {
     let turned = Strand { axis: StrandAxis::Straight(along_x), ..strand }.mesh().unwrap();
     assert!((turned.points[turned.node_sets[sets::END_B][0] as usize].x - 60.0).abs() < 1e-13);
     assert!(turned.node_sets[sets::AXIS].iter().all(|&n| turned.points[n as usize].y == 5.0));
+}
+
+#[test]
+fn twenty_nodes_are_those_of_27_on_the_edges() {
+    for (kind, points) in [(CellKind::Hex20, 27), (CellKind::Hex20R, 8)] {
+        let curved = Strand { layers: 3, lines: MeshLines::Yarns, kind: CellKind::Hex27, ..Strand::default() };
+        let section = Section { area: SectionArea::Inscribed, ..curved.section };
+        let full = Strand { section, ..curved }.mesh().unwrap();
+        let strand = Strand { kind, section, ..curved };
+        let mesh = strand.mesh().unwrap();
+        mesh.validate().unwrap();
+        assert_eq!((mesh.cell_count(), kind.points()), (144, points));
+        // Four levels of corners and mid-sides of the section, three with its corners alone.
+        assert_eq!(mesh.point_count(), 4 * (81 + 32 * 4 - 48) + 3 * 57);
+        for cell in 0..mesh.cell_count() {
+            for (a, b) in mesh.cell(cell).iter().zip(full.cell(cell)) {
+                assert_eq!(mesh.points[*a as usize], full.points[*b as usize], "cell {cell}");
+            }
+        }
+        assert_eq!(mesh.node_sets[sets::END_A].len(), 81 + 32 * 4 - 48);
+        assert_eq!(mesh.node_sets[sets::AXIS].len(), 7);
+        assert_eq!(mesh.node_sets[sets::SURFACE_NODES].len(), 4 * 32 + 3 * 16);
+        let grid = strand.surface_grid();
+        assert_eq!((grid.around, grid.levels), (16, 4));
+        let corners: Vec<u32> = mesh.surfaces[sets::LATERAL]
+            .iter()
+            .flat_map(|&face| mesh.face_nodes(face).unwrap().take(4).collect::<Vec<_>>())
+            .collect();
+        assert!(grid.nodes.iter().all(|node| corners.contains(node)));
+        assert!(corners.iter().all(|node| grid.nodes.contains(node)));
+        for (level, q) in [(0, 3), (2, 7)] {
+            let (low, high) =
+                (mesh.points[grid.node(level, q) as usize], mesh.points[grid.node(level + 1, q) as usize]);
+            assert!((high.z - low.z - 20.0).abs() < 1e-12);
+        }
+    }
 }
 
 #[test]

@@ -64,7 +64,7 @@ pub struct Ignored {
 
 /// Reads a deck and the files it includes.
 ///
-/// Keywords: `*NODE`, `*ELEMENT` (C3D8, C3D27), `*NSET`, `*ELSET`, `*SURFACE` (of element faces), `*ORIENTATION`
+/// Keywords: `*NODE`, `*ELEMENT` (C3D8, C3D20, C3D20R, C3D27), `*NSET`, `*ELSET`, `*SURFACE` (of element faces), `*ORIENTATION`
 /// (rectangular), `*DISTRIBUTION`, `*DISTRIBUTION TABLE`, `*SOLID SECTION`, `*INCLUDE`, `*HEADING`. Keywords that would
 /// change the mesh (`*NGEN`, `*SYSTEM`, several instances) are refused, all others are listed in [`Deck::ignored`].
 /// Sets may name sets defined above them. Paths of included files are relative to the including file. A node of a

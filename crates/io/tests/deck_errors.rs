@@ -55,9 +55,9 @@ fn elements() {
     assert!(matches!(with("** none").kind, Kind::NoElements));
     let (line, kind) = after_cube("1,1,2,3,4,5,6,7,8\n");
     assert!(matches!((line, kind), (1, Kind::DuplicateElement { label: 1, line: LINES, .. })));
-    let error = error_of(&CUBE.replace("C3D8", "C3D20R"));
+    let error = error_of(&CUBE.replace("C3D8", "C3D10"));
     assert_eq!(error.line, 10);
-    assert!(matches!(error.kind, Kind::UnsupportedElement { element_type } if element_type == "C3D20R"));
+    assert!(matches!(error.kind, Kind::UnsupportedElement { element_type } if element_type == "C3D10"));
     assert!(matches!(after_cube("*ELEMENT,TYPE=C3D27\n").1, Kind::MixedElements { nodes: 8, .. }));
     assert!(matches!(after_cube("*ELEMENT\n").1, Kind::MissingParameter { parameter: "TYPE" }));
 }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
-use subrope_geometry::{CellKind, Face, Hex27, Hexahedron, Mesh};
+use subrope_geometry::{CellKind, Face, Hex20, Hex27, Hexahedron, Mesh};
 use subrope_io::{DeckView, ErrorClass, IoError, NumberFormat, ValueError, read_deck, write_deck};
 
 fn data(name: &str) -> PathBuf {
@@ -68,6 +68,21 @@ fn brick_27() -> Mesh {
 fn bricks_of_27_nodes_survive() {
     let mesh = brick_27();
     assert_eq!(again(&DeckView::of_mesh(&mesh), NumberFormat::RoundTrip).mesh, mesh);
+}
+
+#[test]
+fn bricks_of_20_nodes_survive_with_their_integration() {
+    for (kind, name) in [(CellKind::Hex20, "TYPE=C3D20\n"), (CellKind::Hex20R, "TYPE=C3D20R\n")] {
+        let points = Hex20::NODES.iter().map(|&x| Vector3::from(x) * 2.0).collect();
+        let mut mesh = Mesh::new(kind, points, (0..20).collect());
+        mesh.surfaces.insert("TOP".to_owned(), vec![Face { cell: 0, face: 1 }]);
+        mesh.node_sets.insert("SOME".to_owned(), vec![0, 19]);
+        assert_eq!(again(&DeckView::of_mesh(&mesh), NumberFormat::RoundTrip).mesh, mesh);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deck.inp");
+        write_deck(&path, &DeckView::of_mesh(&mesh), NumberFormat::RoundTrip).unwrap();
+        assert!(fs::read_to_string(&path).unwrap().contains(name));
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use subrope_geometry::{CellKind, Hex27, Hexahedron, Mesh};
+use subrope_geometry::{CellKind, Hex20, Hex27, Hexahedron, Mesh};
 use subrope_io::{
     ErrorClass, FieldSpec, IoError, Location, OutputCause, OutputError, Precision, Provenance, ResultReader,
     ResultWriter, StaticField, ValueError, WriterOptions, write_mesh_vtkhdf,
@@ -222,6 +222,17 @@ fn a_mesh_of_27_node_bricks_without_steps() {
     assert_eq!(reader.field(Location::Cell, "fibre", 0).unwrap(), [0.0, 0.6, 0.8]);
     assert_eq!(reader.points().unwrap()[0], [1e6 - 1.0; 3]);
     check_with_vtk(&path, &["--static", "--points", "27", "--cells", "1", "--field", "cell:fibre:3"]);
+}
+
+#[test]
+fn a_mesh_of_20_node_bricks_without_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.vtkhdf");
+    let points = Hex20::NODES.iter().map(|&x| Vector3::from(x)).collect();
+    let mesh = Mesh::new(CellKind::Hex20R, points, (0..20).collect());
+    write_mesh_vtkhdf(&path, &mesh, &[], &Provenance::new(), EXACT).unwrap();
+    assert_eq!(ResultReader::open(&path).unwrap().counts().unwrap(), (20, 1));
+    check_with_vtk(&path, &["--static", "--points", "20", "--cells", "1"]);
 }
 
 #[test]

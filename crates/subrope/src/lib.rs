@@ -14,6 +14,9 @@
 //! - [`progress`]: how a run reports to whoever watches it;
 //! - [`cli`]: the `subrope` command, the only part that prints.
 //!
+//! Features, all on by default: `contact` (crate `subrope-contact`), `hdf5` (result files), `parallel` (threads), `cli`. What is
+//! left out is named where a scene or a command asks for it.
+//!
 //! A strand of 96 bricks, stretched by 1 % with its ends kept from turning:
 //!
 //! ```
@@ -59,6 +62,7 @@ pub mod analytic;
 pub mod check;
 #[cfg(feature = "cli")]
 pub mod cli;
+mod contact;
 pub mod document;
 mod error;
 pub mod law;

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use serde::Serialize;
-use subrope_contact::{FrictionTangent, Method, contacts};
 
+use crate::contact;
 use crate::model::RopeModel;
 use crate::scene::{BundleLaw, Field, Formulation, Law, Scene};
 
@@ -38,16 +38,16 @@ pub struct LeftOut {
 }
 
 impl PlanPart {
-    fn new(part: &'static str, uses: impl Into<String>) -> Self {
+    pub(crate) fn new(part: &'static str, uses: impl Into<String>) -> Self {
         Self { part, uses: uses.into(), leaves_out: Vec::new() }
     }
 
-    fn without(mut self, what: &'static str, why: impl Into<String>) -> Self {
+    pub(crate) fn without(mut self, what: &'static str, why: impl Into<String>) -> Self {
         self.leaves_out.push(LeftOut { what, why: why.into() });
         self
     }
 
-    fn without_if(self, is_out: bool, what: &'static str, why: &str) -> Self {
+    pub(crate) fn without_if(self, is_out: bool, what: &'static str, why: &str) -> Self {
         if is_out { self.without(what, why) } else { self }
     }
 }
@@ -60,7 +60,7 @@ impl Plan {
             symmetry(scene, model),
             state(scene, model),
             element(scene, model),
-            contact(model),
+            contact::plan(model),
             solver(model),
             increments(scene),
             threads(model),
@@ -105,35 +105,10 @@ fn element(scene: &Scene, model: &RopeModel) -> PlanPart {
     let formulation = scene.element.formulation;
     let per_brick = model.mesh.frames.len() / model.mesh.mesh.cell_count().max(1);
     PlanPart::new("element", format!("{}, {per_brick} points a brick", formulation.word())).without_if(
-        matches!(formulation, Formulation::Hex8 | Formulation::Hex27),
+        !matches!(formulation, Formulation::Hex8MeanVolume | Formulation::Hex8MeanElongation),
         "averages over an element",
         "this formulation has none",
     )
-}
-
-fn contact(model: &RopeModel) -> PlanPart {
-    let pairs: Vec<_> = contacts(&model.analysis).collect();
-    let Some(first) = pairs.first() else {
-        let why = "no [[contact]]";
-        return PlanPart::new("contact", "none").without("surfaces, search for candidates, projection", why);
-    };
-    let options = first.options();
-    let method = match options.method {
-        Method::Penalty => "penalty",
-        Method::Augmented { .. } => "augmented Lagrangian",
-    };
-    let rubs = pairs.iter().any(|c| c.options().friction > 0.0);
-    let number = pairs.len();
-    let uses = format!("{number} {}, {method}", if number == 1 { "pair" } else { "pairs" });
-    let uses = if rubs { uses + " with friction" } else { uses };
-    PlanPart::new("contact", uses)
-        .without_if(!rubs, "slip and traction, unsymmetric tangent", "friction = 0")
-        .without_if(
-            rubs && options.tangent == FrictionTangent::Symmetric,
-            "what couples friction to pressure in the tangent",
-            "tangent = \"symmetric\"",
-        )
-        .without_if(options.method == Method::Penalty, "multipliers", "method = \"penalty\"")
 }
 
 fn solver(model: &RopeModel) -> PlanPart {

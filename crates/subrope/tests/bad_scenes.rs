@@ -126,6 +126,18 @@ fn words() {
 }
 
 #[test]
+fn bricks_that_cannot_touch() {
+    let contact = "[element]\nformulation = \"hex20\"\n[[rigid]]\nname = \"rod\"\nshape = \"plane\"\npoint = [0, 9, 0]\naxis = \
+                   [0, -1, 0]\n[[contact]]\nname = \"rubs\"\nprimary = \"rod\"\nsecondary = \"LATERAL\"\n[law]";
+    let fragments =
+        ["surfaces of a [[contact]] touch along smooth surfaces", "\"hex20\"", "\"hex27\"", "bad.toml:12:15"];
+    expect("[law]", contact, &fragments);
+    expect("[law]", &contact.replace("hex20", "hex20r"), &["\"hex20r\" lack", "bad.toml:12:15"]);
+    Scene::from_toml("good.toml", &GOOD.replace("[law]", &contact.replace("hex20", "hex27"))).unwrap();
+    Scene::from_toml("good.toml", &GOOD.replace("[law]", "[element]\nformulation = \"hex20r\"\n[law]")).unwrap();
+}
+
+#[test]
 fn numbers() {
     expect(
         "radius = 2.785",

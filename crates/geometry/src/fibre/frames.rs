@@ -2,7 +2,7 @@
 
 use super::FibreField;
 use crate::hexahedron::position;
-use crate::{CellKind, GeometryError, Hex8, Hex27, Hexahedron, Mesh};
+use crate::{CellKind, GeometryError, Hex8, Hex20, Hex20R, Hex27, Hexahedron, Mesh};
 use nalgebra::{Matrix3, Vector3};
 
 /// Frames at every integration point of a mesh, cell after cell, points in the order of
@@ -13,6 +13,8 @@ use nalgebra::{Matrix3, Vector3};
 pub fn fibre_frames<F: FibreField + ?Sized>(mesh: &Mesh, field: &F) -> Result<Vec<Matrix3<f64>>, GeometryError> {
     match mesh.kind {
         CellKind::Hex8 => sample::<Hex8, 8, F>(mesh, field, &points(Hex8::quadrature())),
+        CellKind::Hex20 => sample::<Hex20, 20, F>(mesh, field, &points(Hex20::quadrature())),
+        CellKind::Hex20R => sample::<Hex20R, 20, F>(mesh, field, &points(Hex20R::quadrature())),
         CellKind::Hex27 => sample::<Hex27, 27, F>(mesh, field, &points(Hex27::quadrature())),
     }
 }
@@ -26,6 +28,7 @@ pub fn fibre_frames<F: FibreField + ?Sized>(mesh: &Mesh, field: &F) -> Result<Ve
 pub fn centroid_frames<F: FibreField + ?Sized>(mesh: &Mesh, field: &F) -> Result<Vec<Matrix3<f64>>, GeometryError> {
     match mesh.kind {
         CellKind::Hex8 => sample::<Hex8, 8, F>(mesh, field, &[[0.0; 3]]),
+        CellKind::Hex20 | CellKind::Hex20R => sample::<Hex20, 20, F>(mesh, field, &[[0.0; 3]]),
         CellKind::Hex27 => sample::<Hex27, 27, F>(mesh, field, &[[0.0; 3]]),
     }
 }

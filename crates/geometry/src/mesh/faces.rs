@@ -18,8 +18,8 @@ const FACES: [[usize; 9]; 6] = [
 ];
 
 impl CellKind {
-    /// Local node numbers of a face (0 to 5 = Abaqus S1 to S6), outward orientation: the four corners of a quad4, or
-    /// the nine nodes of a quad9 (corners, mid-sides, centre). `None` for a face number above 5.
+    /// Local node numbers of a face (0 to 5 = Abaqus S1 to S6), outward orientation: the four corners of a quad4,
+    /// with the mid-sides of a quad8 or these and the centre of a quad9. `None` for a face number above 5.
     #[inline]
     pub fn face(self, face: u8) -> Option<&'static [usize]> {
         FACES.get(usize::from(face)).and_then(|nodes| nodes.get(..self.face_nodes()))
@@ -27,7 +27,7 @@ impl CellKind {
 }
 
 impl Mesh {
-    /// Node indices of a face, outward orientation, in quad4 or quad9 order; `None` when the face does not exist.
+    /// Node indices of a face, outward orientation, in quad4, quad8 or quad9 order; `None` when the face does not exist.
     pub fn face_nodes(&self, face: Face) -> Option<impl ExactSizeIterator<Item = u32> + '_> {
         let nodes = self.kind.nodes();
         let first = face.cell as usize * nodes;

@@ -27,17 +27,6 @@ impl Mesh {
         }
     }
 
-    /// Indices of the nodes that belong to no cell, ascending.
-    pub fn unused_points(&self) -> Vec<u32> {
-        let mut used = vec![false; self.points.len()];
-        for &node in &self.cells {
-            if let Some(flag) = used.get_mut(node as usize) {
-                *flag = true;
-            }
-        }
-        (0_u32..).zip(used).filter(|&(_, flag)| !flag).map(|(node, _)| node).collect()
-    }
-
     fn check_lengths(&self) -> Result<(), GeometryError> {
         let nodes = self.kind.nodes();
         if !self.cells.len().is_multiple_of(nodes) {

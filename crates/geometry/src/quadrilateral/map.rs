@@ -1,6 +1,6 @@
 //! From natural coordinates to a surface in space.
 
-use super::{Quad4, Quad9, Quadrilateral};
+use super::{Quad4, Quad8, Quad9, Quadrilateral};
 use crate::{CellKind, Face, GeometryError, Mesh};
 use nalgebra::Vector3;
 
@@ -42,6 +42,7 @@ pub fn face_area<Q: Quadrilateral<N>, const N: usize>(nodes: &[Vector3<f64>; N])
 pub fn surface_area(mesh: &Mesh, faces: &[Face]) -> Result<f64, GeometryError> {
     let area = |&face: &Face| match mesh.kind {
         CellKind::Hex8 => mesh.face_points(face).map(|nodes| face_area::<Quad4, 4>(&nodes)),
+        CellKind::Hex20 | CellKind::Hex20R => mesh.face_points(face).map(|nodes| face_area::<Quad8, 8>(&nodes)),
         CellKind::Hex27 => mesh.face_points(face).map(|nodes| face_area::<Quad9, 9>(&nodes)),
     };
     let missing = |f: &Face| GeometryError::FaceIndex { cell: f.cell, face: f.face, cells: mesh.cell_count() };

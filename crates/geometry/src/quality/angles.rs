@@ -1,7 +1,7 @@
 //! Statistics of fibre angles over a mesh.
 
 use crate::hexahedron::jacobian;
-use crate::{CellKind, GeometryError, Hex8, Hex27, Hexahedron, Mesh};
+use crate::{CellKind, GeometryError, Hex8, Hex20, Hex20R, Hex27, Hexahedron, Mesh};
 use nalgebra::{Matrix3, Vector3};
 
 /// Angles between fibres and a direction.
@@ -29,6 +29,8 @@ pub fn fibre_angles(
     let angles: Vec<f64> = frames.iter().map(|frame| angle(&frame.column(0).into(), direction)).collect();
     match mesh.kind {
         CellKind::Hex8 => collect::<Hex8, 8>(mesh, &angles),
+        CellKind::Hex20 => collect::<Hex20, 20>(mesh, &angles),
+        CellKind::Hex20R => collect::<Hex20R, 20>(mesh, &angles),
         CellKind::Hex27 => collect::<Hex27, 27>(mesh, &angles),
     }
 }

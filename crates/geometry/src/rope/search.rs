@@ -4,8 +4,7 @@ use super::compaction::{Flattened, flatten};
 use super::contour::{Contour, secant};
 use super::{HelixRadius, LayBy, Rope, RopeLay, RopeShape, RopeStrand};
 use crate::{
-    Axis, CellKind, GeometryError, Helix, Lay, Mesh, Strand, StrandAxis, StrandOrigin, touching_radius,
-    touching_radius_at_angle,
+    Axis, GeometryError, Helix, Lay, Mesh, Strand, StrandAxis, StrandOrigin, touching_radius, touching_radius_at_angle,
 };
 use std::f64::consts::PI;
 
@@ -139,7 +138,7 @@ impl Search<'_> {
 
     fn contour(&self, a: f64, lay: Lay, swelling: f64) -> Result<Contour, GeometryError> {
         let (layer, flattened) = self.layer(a, lay, swelling)?;
-        let order = if layer.kind == CellKind::Hex27 { 2.0 } else { 1.0 };
+        let order = layer.kind.order() as f64;
         let mesh: Mesh = layer.mesh_of(flattened.section)?;
         Ok(Contour::new(&layer, &mesh, self.rope.length / (order * self.rope.layers as f64)))
     }

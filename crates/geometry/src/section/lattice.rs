@@ -17,7 +17,7 @@ pub(super) struct Lattice {
 
 impl Lattice {
     pub(super) fn new(section: &Section, kind: CellKind) -> Self {
-        let order = if kind == CellKind::Hex27 { 2 } else { 1 };
+        let order = kind.order();
         Self { side: section.core_cells * order, rings: section.rings * order, order }
     }
 

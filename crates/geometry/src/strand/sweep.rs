@@ -9,8 +9,9 @@ use nalgebra::Vector3;
 /// The face of a swept outer cell that lies on the surface: nodes 1, 2, 6, 5 (S4).
 const OUTER_FACE: u8 = 3;
 
-/// The mesh with its sets.
-pub(super) fn sweep(strand: &Strand, section: &SectionMesh) -> Mesh {
+/// The mesh with its sets, and which of the [`points`] its nodes are: bricks of 20 nodes have none in the middle of their
+/// faces and of themselves.
+pub(super) fn sweep(strand: &Strand, section: &SectionMesh) -> (Mesh, Vec<u32>) {
     let mut mesh = Mesh::new(strand.kind, points(strand, section), cells(strand, section));
     let (size, top) = (section.points.len() as u32, (levels(strand) - 1) as u32);
     let on_level = |level: u32| (level * size..(level + 1) * size).collect::<Vec<u32>>();
@@ -24,10 +25,12 @@ pub(super) fn sweep(strand: &Strand, section: &SectionMesh) -> Mesh {
     mesh.node_sets = node_sets.into_iter().map(|(name, nodes)| (name.to_owned(), nodes)).collect();
     mesh.element_sets.insert(sets::STRAND.to_owned(), (0..mesh.cell_count() as u32).collect());
     mesh.surfaces.insert(sets::LATERAL.to_owned(), lateral(strand, section));
-    mesh
+    let kept = mesh.drop_unused_points();
+    mesh.point_labels = (1..=kept.len() as u64).collect();
+    (mesh, kept)
 }
 
-/// Positions of all nodes.
+/// Positions of all nodes that bricks may have.
 pub(super) fn points(strand: &Strand, section: &SectionMesh) -> Vec<Vector3<f64>> {
     let (low, high) = strand.span();
     let (last, rate) = (levels(strand) - 1, strand.line_rate());
@@ -41,15 +44,12 @@ pub(super) fn points(strand: &Strand, section: &SectionMesh) -> Vec<Vector3<f64>
 }
 
 fn levels(strand: &Strand) -> usize {
-    match strand.kind {
-        CellKind::Hex8 => strand.layers + 1,
-        CellKind::Hex27 => 2 * strand.layers + 1,
-    }
+    strand.kind.order() * strand.layers + 1
 }
 
 fn cells(strand: &Strand, section: &SectionMesh) -> Vec<u32> {
     let size = section.points.len() as u32;
-    let order = if strand.kind == CellKind::Hex27 { 2 } else { 1 };
+    let order = strand.kind.order() as u32;
     let local = local_nodes(strand.kind);
     let mut cells = Vec::with_capacity(strand.cell_count() * strand.kind.nodes());
     for layer in 0..strand.layers as u32 {
@@ -62,7 +62,7 @@ fn cells(strand: &Strand, section: &SectionMesh) -> Vec<u32> {
 
 /// For every node of the hexahedron: the node of the quadrilateral and the level above the bottom of the layer.
 fn local_nodes(kind: CellKind) -> Vec<(usize, u32)> {
-    let order = if kind == CellKind::Hex27 { 2 } else { 1 };
+    let order = kind.order();
     let node = |ij: [usize; 2]| QUAD_LATTICE.iter().position(|&place| place == ij).unwrap_or(0);
     HEX_LATTICE.iter().take(kind.nodes()).map(|&[i, j, k]| (node([i, j]), (k * order / 2) as u32)).collect()
 }

@@ -96,7 +96,7 @@ pub enum DeckErrorKind {
         keyword: String,
     },
     /// The element type is not a supported hexahedron.
-    #[error("element type {element_type:?} is not supported (C3D8, C3D27)")]
+    #[error("element type {element_type:?} is not supported (C3D8, C3D20, C3D20R, C3D27)")]
     UnsupportedElement {
         /// The type as written.
         element_type: String,

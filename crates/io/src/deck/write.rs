@@ -145,7 +145,8 @@ fn quoted(name: &str) -> String {
     if plain { name.to_owned() } else { format!("\"{name}\"") }
 }
 
-/// Order of the nodes of a 27-node brick in Abaqus: centre, then the faces S1 to S6, after the twenty outer nodes.
+/// Order of the nodes of a 27-node brick in Abaqus: centre, then the faces S1 to S6, after the twenty outer nodes, which are
+/// those of a 20-node brick.
 const HEX27_ORDER: [usize; 27] =
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 26, 24, 25, 22, 21, 23, 20];
 
@@ -192,6 +193,8 @@ impl Writer {
     fn elements(&mut self, mesh: &Mesh) -> Result<(), IoError> {
         self.text(match mesh.kind {
             CellKind::Hex8 => "*ELEMENT, TYPE=C3D8",
+            CellKind::Hex20 => "*ELEMENT, TYPE=C3D20",
+            CellKind::Hex20R => "*ELEMENT, TYPE=C3D20R",
             CellKind::Hex27 => "*ELEMENT, TYPE=C3D27",
         })?;
         for (label, nodes) in mesh.cell_labels.iter().zip(mesh.cells.chunks_exact(mesh.kind.nodes())) {

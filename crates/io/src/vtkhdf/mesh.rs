@@ -88,6 +88,7 @@ fn put_points(root: &Group, mesh: &Mesh) -> hdf5::Result<()> {
 const fn cell_type(kind: CellKind) -> u8 {
     match kind {
         CellKind::Hex8 => 12,
+        CellKind::Hex20 | CellKind::Hex20R => 25,
         CellKind::Hex27 => 29,
     }
 }

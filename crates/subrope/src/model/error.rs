@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use subrope_contact::ContactError;
 use subrope_fem::FemError;
 use subrope_geometry::GeometryError;
 use subrope_io::IoError;
 use subrope_material::LawError;
+
+use crate::contact::ContactError;
 
 /// Why a scene makes no model.
 #[derive(Debug, thiserror::Error)]
@@ -33,7 +34,7 @@ pub enum ModelError {
     /// The kernel refuses the model.
     #[error("{0}")]
     Fem(Box<FemError>),
-    /// Surfaces that cannot be in contact.
+    /// Surfaces that cannot be in contact, or a program without contact.
     #[error("contact: {0}")]
     Contact(#[from] ContactError),
     /// A set that does not exist.

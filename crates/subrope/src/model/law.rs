@@ -2,7 +2,7 @@
 
 use subrope_fem::solid::{Formulation as Element, Full, MeanElongation, MeanVolume, SolidBlock, SolidMesh};
 use subrope_fem::{Contribution, FemError};
-use subrope_geometry::{Hex8, Hex27};
+use subrope_geometry::{Hex8, Hex20, Hex20R, Hex27};
 use subrope_material::Law;
 
 use super::{MeshModel, ModelError};
@@ -41,6 +41,8 @@ fn block<L: Law + 'static>(
         Formulation::Hex8 => hex8::<L, Full>(&solid, law)?,
         Formulation::Hex8MeanVolume => hex8::<L, MeanVolume>(&solid, law)?,
         Formulation::Hex8MeanElongation => hex8::<L, MeanElongation>(&solid, law)?,
+        Formulation::Hex20 => Box::new(SolidBlock::<20, L, Full>::new::<Hex20>(&solid, law)?),
+        Formulation::Hex20R => Box::new(SolidBlock::<20, L, Full>::new::<Hex20R>(&solid, law)?),
         Formulation::Hex27 => Box::new(SolidBlock::<27, L, Full>::new::<Hex27>(&solid, law)?),
     })
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use subrope_fem::analysis::Load;
 use subrope_fem::kinematics::Kinematics;
 use subrope_geometry::quadrilateral::map_surface_point;
-use subrope_geometry::{CellKind, Mesh, Quad4, Quad9, Quadrilateral};
+use subrope_geometry::{CellKind, Mesh, Quad4, Quad8, Quad9, Quadrilateral};
 
 use super::{MeshModel, ModelError};
 use crate::scene::{Component, LoadTarget};
@@ -52,6 +52,7 @@ fn surface_load(name: &str, direction: &Vector3<f64>, mesh: &Mesh) -> Result<Loa
     for face in faces {
         match mesh.kind {
             CellKind::Hex8 => add_face::<Quad4, 4>(mesh, *face, direction, &mut load),
+            CellKind::Hex20 | CellKind::Hex20R => add_face::<Quad8, 8>(mesh, *face, direction, &mut load),
             CellKind::Hex27 => add_face::<Quad9, 9>(mesh, *face, direction, &mut load),
         }
     }

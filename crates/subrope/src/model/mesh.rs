@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use subrope_geometry::{
-    Axis, CellKind, HelicalFibres, Hex8, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames, RopeMesh,
-    RopeShape, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
+    Axis, CellKind, HelicalFibres, Hex8, Hex20, Hex27, Hexahedron, Lay, Mesh, MeshLines, Parallel, PerCellFrames,
+    RopeMesh, RopeShape, Strand, StrandOrigin, fibre_frames, frame_from_directions, map_point, quality, strand,
 };
 use subrope_io::{Ignored, read_deck};
 
@@ -47,7 +47,7 @@ impl MeshModel {
             (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
             (None, Some(rope), ..) if rope.is_slice() => (Self::generate_slice(scene, rope, kind)?, Vec::new()),
             (None, Some(rope), ..) => (Self::generate_rope(scene, rope, kind)?, Vec::new()),
-            (None, None, Some(entry), Some(path)) => Self::read(entry, path)?,
+            (None, None, Some(entry), Some(path)) => Self::read(entry, path, kind)?,
             _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
         };
         let found = model.mesh.kind.nodes();
@@ -90,9 +90,13 @@ impl MeshModel {
         self.strand.as_ref().map(Strand::volume).or(rope)
     }
 
-    fn read(entry: &Deck, path: &std::path::Path) -> Result<(Self, Vec<Ignored>), ModelError> {
+    fn read(entry: &Deck, path: &std::path::Path, kind: CellKind) -> Result<(Self, Vec<Ignored>), ModelError> {
         let deck = read_deck(path)?;
         let mut mesh = deck.mesh;
+        if mesh.kind.nodes() == kind.nodes() {
+            // Where bricks are integrated is for the scene to say, as what they average is.
+            mesh.kind = kind;
+        }
         mesh.validate()
             .and_then(|()| quality::check_orientation(&mesh))
             .map_err(|cause| ModelError::DeckMesh { path: path.to_path_buf(), cause })?;
@@ -161,6 +165,7 @@ impl MeshModel {
         let mut out = vec![0.0; self.mesh.point_count()];
         match self.mesh.kind {
             CellKind::Hex8 => add_volumes::<Hex8, 8>(&self.mesh, &mut out),
+            CellKind::Hex20 | CellKind::Hex20R => add_volumes::<Hex20, 20>(&self.mesh, &mut out),
             CellKind::Hex27 => add_volumes::<Hex27, 27>(&self.mesh, &mut out),
         }
         Ok(out)
@@ -181,8 +186,10 @@ fn add_volumes<H: Hexahedron<N>, const N: usize>(mesh: &Mesh, out: &mut [f64]) {
 /// Nodes of the bricks of a formulation.
 fn cell_kind(formulation: Formulation) -> CellKind {
     match formulation {
+        Formulation::Hex8 | Formulation::Hex8MeanVolume | Formulation::Hex8MeanElongation => CellKind::Hex8,
+        Formulation::Hex20 => CellKind::Hex20,
+        Formulation::Hex20R => CellKind::Hex20R,
         Formulation::Hex27 => CellKind::Hex27,
-        _ => CellKind::Hex8,
     }
 }
 

@@ -1,17 +1,20 @@
 //! From a scene to a finite element model: mesh, fibre frames, law, ends, steps.
 
-mod contact;
 mod error;
 mod law;
 mod loads;
 mod mesh;
+mod rigid;
 mod rope;
 mod slice;
 mod steps;
 
-pub use contact::ContactCells;
+pub use crate::contact::ContactCells;
 pub use error::ModelError;
 pub use mesh::{MeshModel, RopeModelShape};
+pub(crate) use rigid::RigidBody;
+#[cfg(feature = "contact")]
+pub(crate) use rigid::size;
 pub use slice::SliceShape;
 
 use nalgebra::Vector3;
@@ -21,8 +24,7 @@ use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError, Repeated};
 use subrope_io::Ignored;
 
-use slice::Images;
-
+use crate::contact;
 use crate::run::RunError;
 use crate::scene::{End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
 
@@ -103,13 +105,13 @@ fn whole_model(scene: &Scene, mesh: &MeshModel) -> Result<Parts, ModelError> {
     let solid = law::solid(mesh, &scene.law, scene.element.formulation)?;
     let mut positions = mesh.mesh.points.clone();
     let mut sections = scene.end.iter().map(|end| section_of(end, scene, mesh)).collect::<Result<Vec<_>, _>>()?;
-    let bodies = contact::rigid_bodies(scene, mesh, &mut positions, &mut sections)?;
+    let bodies = rigid::rigid_bodies(scene, mesh, &mut positions, &mut sections)?;
     let contacts = contact::contacts(scene, mesh, &bodies, &positions)?;
     let kinematics = Kinematics::new(positions, sections)?;
     let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
     let mut contact_cells = Vec::with_capacity(contacts.len());
     for (contact, cells) in contacts {
-        contributions.push(Box::new(contact));
+        contributions.push(contact);
         contact_cells.push(cells);
     }
     if let Some(stabilisation) = &scene.solver.stabilisation {
@@ -122,14 +124,14 @@ fn whole_model(scene: &Scene, mesh: &MeshModel) -> Result<Parts, ModelError> {
 fn slice_model(scene: &Scene, mesh: &MeshModel, shape: &SliceShape) -> Result<Parts, ModelError> {
     let solid = law::solid(mesh, &scene.law, scene.element.formulation)?;
     let mut positions = mesh.mesh.points.clone();
-    let mut images = Images::new(shape, &mesh.mesh, scene.slice_end().map_or("END_B", |end| end.name.as_str()));
+    let mut screw = slice::screw(shape, &mesh.mesh, scene.slice_end().map_or("END_B", |end| end.name.as_str()));
     let mut contributions: Vec<Box<dyn Contribution>> = vec![Box::new(Repeated::new(solid, shape.copies()))];
     let mut contact_cells = Vec::new();
-    if let Some((contact, cells)) = contact::slice_contact(scene, mesh, &mut images, &mut positions)? {
-        contributions.push(Box::new(Repeated::new(Box::new(contact), shape.contact_copies())));
+    if let Some((contact, cells)) = contact::slice_contact(scene, mesh, &mut screw, &mut positions)? {
+        contributions.push(Box::new(Repeated::new(contact, shape.contact_copies())));
         contact_cells.push(cells);
     }
-    let kinematics = Kinematics::with_screw(positions, Vec::new(), images.screw)?;
+    let kinematics = Kinematics::with_screw(positions, Vec::new(), screw)?;
     Ok((Model { kinematics, contributions }, contact_cells))
 }
 

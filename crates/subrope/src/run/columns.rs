@@ -1,10 +1,10 @@
 //! Columns of the history: one row per converged increment.
 
-use subrope_contact::ContactReport;
 use subrope_fem::analysis::{Analysis, IncrementRecord};
 use subrope_io::Column;
 
-use super::{contacts, strands};
+use super::strands;
+use crate::contact;
 use crate::model::{MeshModel, RopeModel};
 
 const MOTIONS: [(&str, &str); 6] =
@@ -63,11 +63,11 @@ pub fn columns(model: &RopeModel) -> Vec<Column> {
     for strand in 1..=model.mesh.rope.as_ref().map_or(0, |r| r.strands.len()) {
         out.extend(STRAND.map(|(n, u)| Column::new(format!("strand_{strand}_{n}"), u)));
     }
-    if contacts::contacts(analysis).next().is_some() {
+    if contact::is_any(analysis) {
         out.extend(CONTACT_ENERGIES.map(|(n, u)| Column::new(n, u)));
     }
-    for contact in contacts::contacts(analysis) {
-        out.extend(CONTACT.map(|(n, u)| Column::new(format!("{}_{n}", contact.name()), u)));
+    for pair in contact::summaries(&model.mesh, analysis) {
+        out.extend(CONTACT.map(|(n, u)| Column::new(format!("{}_{n}", pair.name), u)));
     }
     out
 }
@@ -111,12 +111,18 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
             strand.dissipated_longitudinal_mj,
         ]);
     }
-    if contacts::contacts(analysis).next().is_some() {
+    if contact::is_any(analysis) {
         out.extend([totals.contact_friction, totals.contact_stored, totals.interference]);
     }
-    for contact in contacts::contacts(analysis) {
-        let ContactReport { touching, area, normal, friction, penetration, work, .. } = contacts::report(mesh, contact);
-        out.extend([normal, friction, work, area, penetration, touching as f64]);
+    for pair in contact::summaries(mesh, analysis) {
+        out.extend([
+            pair.normal_force_n,
+            pair.friction_force_n,
+            pair.friction_work_mj,
+            pair.area_mm2,
+            pair.largest_penetration_mm,
+            pair.touching_points as f64,
+        ]);
     }
     out
 }

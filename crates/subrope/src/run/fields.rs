@@ -6,7 +6,7 @@ use subrope_fem::analysis::Analysis;
 use subrope_fem::solid::{PointSample, SolidFields};
 use subrope_material::StateKind;
 
-use super::contacts::{self, ContactField};
+use crate::contact::{self, ContactField};
 use crate::model::{ContactCells, MeshModel, RopeModel};
 use crate::scene::Field;
 
@@ -58,7 +58,7 @@ impl CycleStart {
     pub fn new(analysis: &Analysis) -> Self {
         let elements = solid(analysis).into_iter();
         let sliding = elements.flat_map(|s| (0..s.element_count()).map(move |e| s.element_energies(e).dissipated_mid));
-        Self { sliding: sliding.collect(), friction: contacts::friction_work(analysis) }
+        Self { sliding: sliding.collect(), friction: contact::friction_work(analysis) }
     }
 }
 
@@ -131,8 +131,7 @@ pub fn arrays(fields: &[Field], model: &RopeModel) -> Vec<FieldArray> {
     let analysis = &model.analysis;
     let solid = solid(analysis);
     let has_state = |kind| solid.is_some_and(|s| s.state_variables().iter().any(|v| v.kind == kind));
-    let (touches, cycles) =
-        (contacts::contacts(analysis).next().is_some(), model.half_cycles.iter().any(Option::is_some));
+    let (touches, cycles) = (contact::is_any(analysis), model.half_cycles.iter().any(Option::is_some));
     let exists = |array: &FieldArray| match array.content {
         Content::State(kind) => has_state(kind),
         Content::Contact(_) => touches,
@@ -175,12 +174,12 @@ pub fn values(
         .map(|a| match a.content {
             Content::Displacement => analysis.displacement()[..nodal].to_vec(),
             Content::Reaction => tied_only(analysis)[..nodal].to_vec(),
-            Content::Contact(kind) => contacts::field(kind, &mesh.mesh, analysis, cells),
+            Content::Contact(kind) => contact::field(kind, &mesh.mesh, analysis, cells),
             Content::Cycle(kind) => match (cycle, kind) {
                 (None, _) => vec![0.0; mesh.mesh.cell_count()],
                 (Some(start), CycleField::Sliding(mode)) => sliding_since(&start.sliding, mode, analysis),
                 (Some(start), CycleField::Friction) => {
-                    contacts::friction_work_since(&start.friction, &mesh.mesh, analysis, cells)
+                    contact::friction_work_since(&start.friction, &mesh.mesh, analysis, cells)
                 }
             },
             Content::Strand => mesh.rope.iter().flat_map(|r| &r.strand_of_cell).map(|s| f64::from(s + 1)).collect(),

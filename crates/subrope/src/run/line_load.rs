@@ -8,11 +8,11 @@ use std::path::Path;
 use nalgebra::Vector3;
 use serde::Serialize;
 use subrope_fem::analysis::Analysis;
-use subrope_geometry::{CellKind, Strand, StrandAxis, rope, strand};
+use subrope_geometry::{Strand, StrandAxis, rope, strand};
 use subrope_io::{Column, HistoryWriter, IoError};
 
-use super::contacts;
 use crate::analytic::LaidStrands;
+use crate::contact;
 use crate::model::{ContactCells, MeshModel, RopeModel};
 
 /// Name of the table.
@@ -139,7 +139,7 @@ impl Layers<'_> {
     /// Mean of the nodes between two layers \[mm\], level 0 at the low end.
     fn middle(&self, level: usize, mesh: &MeshModel, displacement: Option<&[f64]>) -> Vector3<f64> {
         let (first, count) = self.nodes;
-        let step = if self.strand.kind == CellKind::Hex27 { 2 } else { 1 };
+        let step = self.strand.kind.order();
         let nodes = first + level * step * count..first + (level * step + 1) * count;
         let place = |n: usize| {
             let moved = displacement.map(|u| Vector3::from_column_slice(&u[3 * n..3 * n + 3]));
@@ -190,24 +190,22 @@ pub fn contact_lines(model: &RopeModel) -> Vec<ContactLine> {
 pub(super) fn lines(mesh: &MeshModel, cells: &[ContactCells], analysis: &Analysis) -> Vec<ContactLine> {
     let strands = Layers::of(mesh);
     let mut out = Vec::new();
-    for (contact, cells) in contacts::contacts(analysis).zip(cells) {
+    for (pair, cells) in contact::loads(analysis).into_iter().zip(cells) {
         let first = cells.secondary.first().map_or(0, |f| f.cell as usize);
         let Some(index) = strands.iter().rposition(|s| s.first_cell <= first) else { continue };
         let strand = &strands[index];
-        let displacement = analysis.displacement();
-        let mut slices = strand.slices(mesh, displacement, contact.options().reach);
-        for (point, foot) in contact.points().zip(contact.gaps(displacement)) {
-            let face = cells.secondary[contact.secondary().face(point.patch)];
-            let slice = &mut slices[strand.layer(face.cell as usize)];
-            slice.work += point.area * point.state.work;
-            slice.gap = foot.map_or(slice.gap, |(_, gap)| slice.gap.min(gap));
-            if point.state.pressure > 0.0 {
-                slice.normal += point.area * point.state.pressure;
-                slice.friction += point.area * point.state.traction.norm();
+        let mut slices = strand.slices(mesh, analysis.displacement(), pair.reach);
+        for point in pair.points {
+            let slice = &mut slices[strand.layer(cells.secondary[point.face].cell as usize)];
+            slice.work += point.area * point.work;
+            slice.gap = point.gap.map_or(slice.gap, |gap| slice.gap.min(gap));
+            if point.pressure > 0.0 {
+                slice.normal += point.area * point.pressure;
+                slice.friction += point.area * point.friction;
                 slice.area += point.area;
             }
         }
-        out.push(ContactLine { name: contact.name().to_owned(), strand: index + 1, slices });
+        out.push(ContactLine { name: pair.name, strand: index + 1, slices });
     }
     out
 }
@@ -337,7 +335,7 @@ impl LineLoadTable {
     /// Opens the table of a model with contact lines; an older one must not stand beside other results.
     pub fn open(model: &RopeModel, folder: &Path) -> Result<Self, IoError> {
         let path = folder.join(FILE);
-        if contacts::contacts(&model.analysis).next().is_none() || Layers::of(&model.mesh).is_empty() {
+        if !contact::is_any(&model.analysis) || Layers::of(&model.mesh).is_empty() {
             let _ = std::fs::remove_file(&path);
             return Ok(Self { writer: None });
         }

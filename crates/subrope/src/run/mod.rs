@@ -2,7 +2,6 @@
 
 mod clock;
 mod columns;
-mod contacts;
 mod cycles;
 mod error;
 #[cfg(feature = "hdf5")]

@@ -28,10 +28,14 @@ const DIRECTIONS: usize = 90;
 const LEAST_NODES: usize = 4;
 
 /// The sections of a mesh along z under nodal displacements (three per node), lowest first. Nodes count as one section
-/// when their z agree to 1e-6 of the length; layers of fewer than four nodes are left out.
+/// when their z agree to 1e-6 of the length; layers of fewer than four nodes are left out, and so are those half way up
+/// 20-node bricks, which hold no more than the corners of a section.
 #[must_use]
 pub fn section_shapes(mesh: &Mesh, displacement: &[f64]) -> Vec<SectionShape> {
-    layers(mesh).iter().filter(|l| l.len() >= LEAST_NODES).map(|l| shape(mesh, displacement, l)).collect()
+    let layers = layers(mesh);
+    let fullest = layers.iter().map(Vec::len).max().unwrap_or_default();
+    let least = if mesh.kind.is_serendipity() { fullest.div_ceil(2) } else { LEAST_NODES };
+    layers.iter().filter(|l| l.len() >= least).map(|l| shape(mesh, displacement, l)).collect()
 }
 
 fn layers(mesh: &Mesh) -> Vec<Vec<u32>> {

@@ -419,7 +419,7 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
 
 /// Reference positions of all integration points \[mm\].
 pub fn integration_points(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
-    use subrope_geometry::{CellKind, Hex8, Hex27, Hexahedron};
+    use subrope_geometry::{CellKind, Hex8, Hex20, Hex20R, Hex27, Hexahedron};
     fn positions<H: Hexahedron<N>, const N: usize>(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
         let cells = (0..mesh.cell_count()).filter_map(|e| mesh.cell_points::<N>(e));
         let at = |x: &[Vector3<f64>; N], xi| x.iter().zip(H::shape(xi)).map(|(p, n)| p * n).sum::<Vector3<f64>>();
@@ -427,6 +427,8 @@ pub fn integration_points(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
     }
     match mesh.kind {
         CellKind::Hex8 => positions::<Hex8, 8>(mesh),
+        CellKind::Hex20 => positions::<Hex20, 20>(mesh),
+        CellKind::Hex20R => positions::<Hex20R, 20>(mesh),
         CellKind::Hex27 => positions::<Hex27, 27>(mesh),
     }
 }

@@ -8,12 +8,12 @@ use subrope_fem::analysis::Phase;
 use subrope_fem::kinematics::NodeRule;
 
 use super::clock::Reading;
-use super::contacts::{self, PairSummary};
 use super::cycles::CycleRow;
 use super::findings::{Findings, PeakDensities};
 use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, contact_lines};
 use super::session::integration_points;
 use super::strands::{self, StrandSummary};
+use crate::contact::{self, PairSummary};
 use crate::model::RopeModel;
 use crate::plan::Plan;
 use crate::scene::SceneFile;
@@ -249,7 +249,7 @@ impl Summary {
             symmetry: symmetry(model),
             reference_points: points(model),
             energies: energies(model),
-            contacts: contacts::summaries(&model.mesh, analysis),
+            contacts: contact::summaries(&model.mesh, analysis),
             line_loads: contact_lines(model).iter().map(ContactLine::summary).collect(),
             analytic_line_load: line_load::analytic(model),
             strands: strands::strands(&model.mesh, analysis),

@@ -23,6 +23,11 @@ pub enum Formulation {
     /// Eight nodes, the fibre elongation averaged over the element: free of fibre locking. Needs a law with fibres.
     #[default]
     Hex8MeanElongation,
+    /// 20 nodes, 3x3x3 points (C3D20). No contact, no ropes.
+    Hex20,
+    /// 20 nodes, 2x2x2 points (C3D20R): the cheapest of all until sliding localises, too soft then. No contact, no ropes.
+    #[serde(rename = "hex20r")]
+    Hex20R,
     /// 27 nodes, 3x3x3 points.
     Hex27,
 }
@@ -35,7 +40,15 @@ impl Formulation {
             Self::Hex8 => "hex8",
             Self::Hex8MeanVolume => "hex8_mean_volume",
             Self::Hex8MeanElongation => "hex8_mean_elongation",
+            Self::Hex20 => "hex20",
+            Self::Hex20R => "hex20r",
             Self::Hex27 => "hex27",
         }
+    }
+
+    /// Whether faces have a node in the middle, or need none: what touches others is made of such.
+    #[must_use]
+    pub fn can_touch(self) -> bool {
+        !matches!(self, Self::Hex20 | Self::Hex20R)
     }
 }

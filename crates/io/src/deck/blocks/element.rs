@@ -24,6 +24,8 @@ impl ElementBlock {
         let element_type = keyword.required("TYPE")?.name();
         let kind = match element_type.as_str() {
             "C3D8" => CellKind::Hex8,
+            "C3D20" => CellKind::Hex20,
+            "C3D20R" => CellKind::Hex20R,
             "C3D27" => CellKind::Hex27,
             _ => return Err(DeckErrorKind::UnsupportedElement { element_type }),
         };

@@ -1,6 +1,7 @@
 //! Checks of ropes, contacts and rigid bodies.
 
 use super::{Checker, top};
+use crate::contact;
 use crate::document::Location;
 use crate::scene::{Contact, MeshLines, RigidShape, Rope, Yarns};
 
@@ -74,6 +75,9 @@ impl Checker<'_> {
                 let cause = format!("the name \"{}\" is that of an end", rigid.name);
                 self.inconsistent(&at.at("name"), cause, "reference points need names of their own");
             }
+        }
+        if !cfg!(feature = "contact") && !scene.contact.is_empty() {
+            self.inconsistent(&top("contact").at(0), contact::LEFT_OUT, contact::HOW_TO_GET);
         }
         for (index, contact) in scene.contact.iter().enumerate() {
             self.contact(&top("contact").at(index), contact);

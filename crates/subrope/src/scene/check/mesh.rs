@@ -90,6 +90,7 @@ impl Checker<'_> {
     }
 
     fn formulation(&mut self) {
+        self.touching();
         let (element, law) = (&self.scene.element, &self.scene.law);
         if element.formulation != Formulation::Hex8MeanElongation || law.has_fibre_term() {
             return;
@@ -101,8 +102,27 @@ impl Checker<'_> {
             element.formulation.word(),
             law.word()
         );
-        let help = "choose [element] formulation = \"hex8\", \"hex8_mean_volume\" or \"hex27\"; laws with a fibre \
+        let help = "choose [element] formulation = \"hex8\", \"hex8_mean_volume\", \"hex20\", \"hex20r\" or \"hex27\"; laws with a fibre \
                     term: bundle, charmetant, fibre_reinforced";
         self.inconsistent(&at, cause, help);
+    }
+
+    /// Faces of 20-node bricks have no node in their middle, without which there is no smooth surface.
+    fn touching(&mut self) {
+        let (scene, formulation) = (self.scene, self.scene.element.formulation);
+        let what = match (&scene.rope, scene.contact.is_empty()) {
+            (Some(_), _) => "the strands of a [rope]",
+            (None, false) => "surfaces of a [[contact]]",
+            (None, true) => return,
+        };
+        if !formulation.can_touch() {
+            let word = formulation.word();
+            let cause = format!(
+                "{what} touch along smooth surfaces, for which the bricks of \"{word}\" lack the nodes in the middle of \
+                 their faces"
+            );
+            let help = "choose formulation = \"hex8_mean_elongation\" or \"hex27\"";
+            self.inconsistent(&top("element").at("formulation"), cause, help);
+        }
     }
 }

@@ -1,87 +1,13 @@
-//! What the contacts of a model tell: sums per pair, fields on the cells that touch.
+//! What contacts tell on the cells that touch.
 
-#[cfg(feature = "hdf5")]
 use nalgebra::{Rotation3, Vector3};
-use serde::Serialize;
-pub use subrope_contact::contacts;
-#[cfg(feature = "hdf5")]
 use subrope_contact::foot::Place;
-use subrope_contact::{Contact, ContactReport};
+use subrope_contact::{Contact, contacts};
 use subrope_fem::analysis::Analysis;
-#[cfg(feature = "hdf5")]
-use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad9, quadrilateral};
+use subrope_geometry::{CellKind, Face, Mesh, Quad4, Quad8, Quad9, quadrilateral};
 
-#[cfg(feature = "hdf5")]
-use crate::model::ContactCells;
-use crate::model::MeshModel;
+use super::super::{ContactCells, ContactField};
 
-/// A pair of surfaces at the end of a run.
-#[derive(Clone, Debug, Serialize)]
-pub struct PairSummary {
-    /// Name of the pair.
-    pub name: String,
-    /// Integration points under pressure.
-    pub touching_points: usize,
-    /// Reference area under pressure \[mm^2\].
-    pub area_mm2: f64,
-    /// Sum of the pressure over the reference area \[N\].
-    pub normal_force_n: f64,
-    /// Sum of the magnitude of friction traction over the reference area \[N\].
-    pub friction_force_n: f64,
-    /// Largest pressure \[MPa\].
-    pub largest_pressure_mpa: f64,
-    /// Largest penetration \[mm\].
-    pub largest_penetration_mm: f64,
-    /// Energy dissipated by friction, end values as in the fields \[mJ\].
-    pub friction_work_mj: f64,
-    /// Normal penalty \[MPa/mm\].
-    pub penalty_mpa_per_mm: f64,
-}
-
-/// Sums and extremes of a contact over the whole length of a pair of strands; the points of a slice count once.
-pub fn report(mesh: &MeshModel, contact: &Contact) -> ContactReport {
-    let (one, layers) = (contact.report(), mesh.layers_per_strand());
-    let ContactReport { area, normal, friction, work, .. } = one;
-    let [area, normal, friction, work] = [area, normal, friction, work].map(|sum| layers * sum);
-    ContactReport { area, normal, friction, work, ..one }
-}
-
-/// One entry per pair.
-pub fn summaries(mesh: &MeshModel, analysis: &Analysis) -> Vec<PairSummary> {
-    let summary = |contact: &Contact| {
-        let ContactReport { touching, area, normal, friction, pressure, penetration, work } = report(mesh, contact);
-        PairSummary {
-            name: contact.name().to_owned(),
-            touching_points: touching,
-            area_mm2: area,
-            normal_force_n: normal,
-            friction_force_n: friction,
-            largest_pressure_mpa: pressure,
-            largest_penetration_mm: penetration,
-            friction_work_mj: work,
-            penalty_mpa_per_mm: contact.options().penalty,
-        }
-    };
-    contacts(analysis).map(summary).collect()
-}
-
-#[cfg(feature = "hdf5")]
-/// A quantity on the cells whose faces touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactField {
-    /// Smallest gap \[mm\]; the reach of the search where nothing is nearer.
-    Gap,
-    /// Pressure \[MPa\], mean over the face by reference area.
-    Pressure,
-    /// Traction of friction on the cell \[MPa\], mean over the face.
-    Traction,
-    /// Friction work per area \[mJ/mm^2\], mean over the face.
-    FrictionWork,
-    /// Slipped length \[mm\], mean over the points that have slipped.
-    Slip,
-}
-
-#[cfg(feature = "hdf5")]
 /// Values of all cells of a mesh; both sides of a pair show what happens between them.
 pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
     use ContactField as F;
@@ -109,7 +35,6 @@ pub fn field(kind: ContactField, mesh: &Mesh, analysis: &Analysis, cells: &[Cont
     faces.means()
 }
 
-#[cfg(feature = "hdf5")]
 /// From the image of a strand that a point touches back to the strand.
 fn turned_back(contact: &Contact, place: Option<Place>, analysis: &Analysis) -> Rotation3<f64> {
     // Sixteen control points surround a patch, whose own layer begins at the sixth; a facet has only its corners.
@@ -120,7 +45,6 @@ fn turned_back(contact: &Contact, place: Option<Place>, analysis: &Analysis) -> 
     Rotation3::from_axis_angle(&Vector3::z_axis(), -turn.unwrap_or_default())
 }
 
-#[cfg(feature = "hdf5")]
 /// Friction work per area of all points since some earlier state \[mJ/mm^2\], mid-point values, as means of faces.
 pub fn friction_work_since(before: &[Vec<f64>], mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
     let mut faces = FaceMeans::new(mesh, 1);
@@ -135,13 +59,11 @@ pub fn friction_work_since(before: &[Vec<f64>], mesh: &Mesh, analysis: &Analysis
     faces.means()
 }
 
-#[cfg(feature = "hdf5")]
 /// Friction work per area of all points so far \[mJ/mm^2\], mid-point values, contact by contact.
 pub fn friction_work(analysis: &Analysis) -> Vec<Vec<f64>> {
     contacts(analysis).map(|contact| contact.points().map(|p| p.state.work_mid).collect()).collect()
 }
 
-#[cfg(feature = "hdf5")]
 /// The face that carries a point, and the one that it touches.
 fn faces_of(contact: &Contact, cells: &ContactCells, patch: usize, place: Option<Place>) -> [Option<Face>; 2] {
     let own = cells.secondary.get(contact.secondary().face(patch));
@@ -149,7 +71,6 @@ fn faces_of(contact: &Contact, cells: &ContactCells, patch: usize, place: Option
     [own.copied(), other.copied()]
 }
 
-#[cfg(feature = "hdf5")]
 fn gaps(mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
     let reach = contacts(analysis).map(|c| c.options().reach).fold(0.0, f64::max);
     let mut out = vec![reach; mesh.cell_count()];
@@ -165,7 +86,6 @@ fn gaps(mesh: &Mesh, analysis: &Analysis, cells: &[ContactCells]) -> Vec<f64> {
     out
 }
 
-#[cfg(feature = "hdf5")]
 /// Sums over the faces of cells, to become means.
 struct FaceMeans<'a> {
     mesh: &'a Mesh,
@@ -174,7 +94,6 @@ struct FaceMeans<'a> {
     areas: Vec<f64>,
 }
 
-#[cfg(feature = "hdf5")]
 impl<'a> FaceMeans<'a> {
     fn new(mesh: &'a Mesh, components: usize) -> Self {
         let count = mesh.cell_count();
@@ -204,10 +123,12 @@ impl<'a> FaceMeans<'a> {
     }
 }
 
-#[cfg(feature = "hdf5")]
 fn face_area(mesh: &Mesh, face: Face) -> f64 {
     match mesh.kind {
         CellKind::Hex8 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad4, 4>(&x)),
+        CellKind::Hex20 | CellKind::Hex20R => {
+            mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad8, 8>(&x))
+        }
         CellKind::Hex27 => mesh.face_points(face).map_or(0.0, |x| quadrilateral::face_area::<Quad9, 9>(&x)),
     }
 }

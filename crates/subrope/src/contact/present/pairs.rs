@@ -1,13 +1,14 @@
-//! Contacts and rigid bodies of a scene.
+//! The contacts of a scene, ready to be solved.
 
 use nalgebra::Vector3;
 use subrope_contact::{Contact, ContactError, ContactOptions, FrictionTangent, Method, Smoothing, Surface};
-use subrope_fem::kinematics::{Section, SectionKind};
-use subrope_geometry::{Axis, Face, Mesh, surface_area};
+use subrope_fem::kinematics::Screw;
+use subrope_geometry::{Face, Mesh, surface_area};
 use subrope_material::transverse_modulus;
 
-use super::slice::{self, Images, SliceContact};
-use super::{MeshModel, ModelError};
+use super::super::{ContactCells, Pair};
+use super::images::{self, SliceContact};
+use crate::model::{MeshModel, ModelError, RigidBody, size};
 use crate::scene::{self, ContactMethod, ContactSmoothing, ContactTangent, RigidShape, Scene};
 
 /// Most rounds of an augmented Lagrangian.
@@ -15,62 +16,18 @@ const ROUNDS: usize = 30;
 /// Candidates of contact are searched up to this part of the radius.
 const REACH: f64 = 0.1;
 
-/// Nodes of a rigid body: the origin of its frame and one node along each axis, behind those of the mesh.
-pub(super) struct RigidBody {
-    nodes: [u32; 4],
-    arm: f64,
-    shape: RigidShape,
-    radius: f64,
-}
-
-/// Adds the frames of rigid bodies to the nodes and ties each to its reference point.
-pub(super) fn rigid_bodies(
-    scene: &Scene,
-    mesh: &MeshModel,
-    positions: &mut Vec<Vector3<f64>>,
-    sections: &mut Vec<Section>,
-) -> Result<Vec<RigidBody>, ModelError> {
-    let arm = size(scene, mesh);
-    let mut out = Vec::new();
-    for rigid in &scene.rigid {
-        let axis = Axis::new(Vector3::from(rigid.point), Vector3::from(rigid.axis))?;
-        let first = positions.len() as u32;
-        let nodes = [first, first + 1, first + 2, first + 3];
-        positions.push(axis.origin());
-        positions.extend([axis.reference(), axis.transverse(), axis.direction()].map(|d| axis.origin() + d * arm));
-        sections.push(Section {
-            name: rigid.name.clone(),
-            position: axis.origin(),
-            axis: axis.direction(),
-            nodes: nodes.to_vec(),
-            kind: SectionKind::Rigid,
-        });
-        out.push(RigidBody { nodes, arm, shape: rigid.shape, radius: rigid.radius.unwrap_or_default() });
-    }
-    Ok(out)
-}
-
-/// Faces that the patches of a contact belong to.
-#[derive(Clone, Debug, Default)]
-pub struct ContactCells {
-    /// Of the primary surface; none of a rigid body.
-    pub primary: Vec<Face>,
-    /// Of the secondary surface.
-    pub secondary: Vec<Face>,
-}
-
 /// All contacts of a scene; one that names no surfaces stands for all neighbouring strands.
-pub(super) fn contacts(
+pub fn contacts(
     scene: &Scene,
     mesh: &MeshModel,
     bodies: &[RigidBody],
     positions: &[Vector3<f64>],
-) -> Result<Vec<(Contact, ContactCells)>, ModelError> {
+) -> Result<Vec<Pair>, ModelError> {
     if scene.contact.is_empty() {
         return Ok(Vec::new());
     }
     let modulus = transverse_modulus(&*crate::law::build(&scene.law)?)?;
-    let mut out = Vec::new();
+    let mut out: Vec<Pair> = Vec::new();
     for entry in &scene.contact {
         for (name, primary, secondary) in pairs(scene, entry) {
             let smoothing = smoothing(entry);
@@ -83,19 +40,20 @@ pub(super) fn contacts(
             let options = options(scene, entry, modulus, size);
             let contact = Contact::new(&name, first, second, positions, options).map_err(refused)?;
             let primary = faces(&mesh.mesh, &primary).map(<[Face]>::to_vec).unwrap_or_default();
-            out.push((contact, ContactCells { primary, secondary: faces(&mesh.mesh, &secondary)?.to_vec() }));
+            let secondary = faces(&mesh.mesh, &secondary)?.to_vec();
+            out.push((Box::new(contact), ContactCells { primary, secondary }));
         }
     }
     Ok(out)
 }
 
 /// The contact of a slice, if its scene has one.
-pub(super) fn slice_contact(
+pub fn slice_contact(
     scene: &Scene,
     mesh: &MeshModel,
-    images: &mut Images,
+    screw: &mut Screw,
     positions: &mut Vec<Vector3<f64>>,
-) -> Result<Option<(Contact, ContactCells)>, ModelError> {
+) -> Result<Option<Pair>, ModelError> {
     let Some(entry) = scene.contact.first() else { return Ok(None) };
     let modulus = transverse_modulus(&*crate::law::build(&scene.law)?)?;
     let wanted = SliceContact {
@@ -103,7 +61,7 @@ pub(super) fn slice_contact(
         smoothing: smoothing(entry),
         options: options(scene, entry, modulus, size(scene, mesh)),
     };
-    slice::contact(mesh, images, &wanted, positions).map(Some)
+    images::contact(mesh, screw, &wanted, positions).map(Some)
 }
 
 fn smoothing(entry: &scene::Contact) -> Smoothing {
@@ -166,15 +124,6 @@ fn faces<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a [Face], ModelError> {
 
 fn surface(mesh: &Mesh, name: &str, smoothing: Smoothing) -> Result<Surface, ModelError> {
     Surface::new(mesh, faces(mesh, name)?, smoothing).map_err(refused)
-}
-
-/// Radius of a generated strand, else a length that belongs to the mesh.
-fn size(scene: &Scene, mesh: &MeshModel) -> f64 {
-    scene.strand_radius().unwrap_or_else(|| {
-        let low = mesh.mesh.points.iter().fold(Vector3::repeat(f64::INFINITY), |a, p| a.inf(p));
-        let high = mesh.mesh.points.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
-        0.1 * (high - low).norm()
-    })
 }
 
 /// Radius of a generated strand; of a surface of a deck 2.5 times the side of a mean face, as on a ring of sixteen.
