@@ -1,5 +1,6 @@
 //! Errors of the crate: wrong input, wrong values, failed output.
 
+use crate::checkpoint::CheckpointError;
 use crate::deck::DeckError;
 use std::path::{Path, PathBuf};
 use subrope_geometry::GeometryError;
@@ -14,6 +15,17 @@ pub enum IoError {
     /// A text file of the project (history) is wrong.
     #[error(transparent)]
     Text(#[from] TextError),
+    /// A checkpoint is damaged, or lacks something.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A result file is not what it was when a checkpoint was written.
+    #[error("{}: its first {length} bytes are not those that the checkpoint knows", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that the checkpoint knows.
+        length: u64,
+    },
     /// A file cannot be read.
     #[error("{}: cannot be read: {source}", path.display())]
     Read {
@@ -76,9 +88,13 @@ impl IoError {
     /// Whether the input, the values or the output is at fault.
     pub const fn class(&self) -> ErrorClass {
         match self {
-            Self::Deck(_) | Self::Text(_) | Self::Read { .. } | Self::ReadResult { .. } | Self::NoSuchField { .. } => {
-                ErrorClass::Input
-            }
+            Self::Deck(_)
+            | Self::Text(_)
+            | Self::Checkpoint(_)
+            | Self::Changed { .. }
+            | Self::Read { .. }
+            | Self::ReadResult { .. }
+            | Self::NoSuchField { .. } => ErrorClass::Input,
             Self::Value(_) | Self::Mesh(_) => ErrorClass::Value,
             Self::Output(_) => ErrorClass::Output,
         }
@@ -98,6 +114,8 @@ pub enum Action {
     Rename,
     /// Closing it.
     Close,
+    /// Opening it again.
+    Open,
 }
 
 impl std::fmt::Display for Action {
@@ -108,6 +126,7 @@ impl std::fmt::Display for Action {
             Self::Flush => "flushed",
             Self::Rename => "renamed",
             Self::Close => "closed",
+            Self::Open => "opened again",
         })
     }
 }

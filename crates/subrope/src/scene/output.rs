@@ -19,6 +19,8 @@ pub struct Output {
     /// Write every n-th increment \[-\]; the last of a step is always written.
     #[schemars(range(min = 1))]
     pub every: usize,
+    /// Write a checkpoint every n-th increment \[-\], for `--restart`; 0: none.
+    pub checkpoint_every: usize,
     /// Digits of the fields: "f32" or "f64".
     pub precision: Precision,
     /// Compression of the fields, from 0 (none) to 9 \[-\].
@@ -28,7 +30,14 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { folder: None, fields: Field::ALL.to_vec(), every: 1, precision: Precision::F32, compression: 4 }
+        Self {
+            folder: None,
+            fields: Field::ALL.to_vec(),
+            every: 1,
+            checkpoint_every: 10,
+            precision: Precision::F32,
+            compression: 4,
+        }
     }
 }
 
