@@ -97,6 +97,7 @@ fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             all.remove("seconds");
             all.remove("peak_memory_mb");
             all["size"].as_object_mut().unwrap().remove("threads");
+            all["plan"].as_array_mut().unwrap().retain(|part| part["part"] != "threads");
             (name, summary.to_string().into_bytes())
         })
         .collect()
@@ -132,7 +133,7 @@ fn check(text: &str, threads: usize, every: usize) -> (BTreeMap<String, Vec<u8>>
             Err(error) => panic!("{}", error.plain()),
         }
     }
-    assert!(restarted > 2, "{restarted} of {} restarted", snapshots.taken.len());
+    assert!(restarted >= 2, "{restarted} of {} restarted", snapshots.taken.len());
     (reference, snapshots.cutbacks)
 }
 
@@ -163,14 +164,14 @@ tension = { elongation = 0.01 }
 [[step]]
 name = "cycle"
 increments = { initial = 0.5 }
-cycles = { count = 3, low = 0.2, high = 1.0, every = 2 }
+cycles = { count = 2, low = 0.2, high = 1.0, every = 2 }
 [output]
 checkpoint_every = 4
 "#;
 
 #[test]
 fn a_rope_with_friction_and_cycles_goes_on() {
-    let one = check(&short_rope(CYCLES), 1, 3).0;
+    let one = check(&short_rope(CYCLES), 1, 5).0;
     let two = check(&short_rope(CYCLES), 2, 9).0;
     assert!(one == two, "the same on two threads");
 }
@@ -214,7 +215,7 @@ fn no_failing_write_loses_anything() {
                 break;
             }
             let message = ended.unwrap_err().plain();
-            assert!(message.contains("no space") || message.contains("earlier write"), "{first}: {message}");
+            assert!(message.contains("storage") || message.contains("earlier write"), "{first}: {message}");
             // What another process finds: the library knows the files that it has open by their place on the disk.
             let left = scene.out(&format!("left_{first}_{count}"));
             copy(&out, &left);
