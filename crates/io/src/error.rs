@@ -17,7 +17,7 @@ pub enum IoError {
     Text(#[from] TextError),
     /// A checkpoint is damaged, or lacks something.
     #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
+    Checkpoint(Box<CheckpointError>),
     /// A result file is not what it was when a checkpoint was written.
     #[error("{}: its first {length} bytes are not those that the checkpoint knows", path.display())]
     Changed {
@@ -63,6 +63,12 @@ pub enum IoError {
     /// An output failed.
     #[error(transparent)]
     Output(#[from] OutputError),
+}
+
+impl From<CheckpointError> for IoError {
+    fn from(error: CheckpointError) -> Self {
+        Self::Checkpoint(Box::new(error))
+    }
 }
 
 /// What an error means to a caller that must choose an exit code.

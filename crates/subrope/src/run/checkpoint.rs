@@ -1,6 +1,7 @@
 //! Checkpoints of a run: when they are written, what they hold, whose they are.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use subrope_fem::analysis::Analysis;
 use subrope_fem::{StateError, StateReader, StateWriter};
@@ -29,18 +30,26 @@ pub struct Checkpoints {
     writes: Writes,
     /// Increments at the last one.
     last: Option<usize>,
+    /// Time that they took.
+    spent: Duration,
 }
 
 impl Checkpoints {
     /// Of a run that has `last` as its last checkpoint.
     pub fn new(file: &SceneFile, folder: &Path, writes: &Writes, last: Option<usize>) -> Self {
         let every = file.scene.output.checkpoint_every;
-        Self { path: folder.join(FILE), scene: file.hash.clone(), every, writes: writes.clone(), last }
+        let (path, scene) = (folder.join(FILE), file.hash.clone());
+        Self { path, scene, every, writes: writes.clone(), last, spent: Duration::ZERO }
     }
 
     /// Whether one is to be written after so many increments; when the user stops the run one always is.
     pub fn is_due(&self, increments: usize, stopped: bool) -> bool {
         self.every > 0 && (stopped || increments.is_multiple_of(self.every))
+    }
+
+    /// Time that they took \[s\].
+    pub fn seconds(&self) -> f64 {
+        self.spent.as_secs_f64()
     }
 
     /// Increments at the last one.
@@ -56,18 +65,21 @@ impl Checkpoints {
         stable: bool,
         elapsed: Elapsed,
     ) -> Result<(), IoError> {
+        let start = Instant::now();
         let mut file = CheckpointWriter::create(&self.path, &self.writes)?;
         for (name, text) in [("version", VERSION), ("scene", &self.scene)] {
             file.bytes(name, text.len() as u64, &mut text.as_bytes())?;
         }
-        let Reading { wall, cpu } = elapsed.solving;
-        file.numbers("elapsed", 3, &mut [elapsed.total, wall, cpu.unwrap_or(f64::NAN)].into_iter())?;
+        let (Reading { wall, cpu }, own) = (elapsed.solving, elapsed.checkpoints);
+        file.numbers("elapsed", 4, &mut [elapsed.total, wall, cpu.unwrap_or(f64::NAN), own].into_iter())?;
         file.counts("stable", 1, &mut std::iter::once(u64::from(stable)))?;
         output.save(&mut file)?;
         self.save(analysis, &mut file)?;
         file.commit()?;
         self.last = Some(analysis.totals().increments);
-        output.go_on()
+        output.go_on()?;
+        self.spent += start.elapsed();
+        Ok(())
     }
 
     fn save(&self, analysis: &Analysis, file: &mut CheckpointWriter) -> Result<(), IoError> {
@@ -133,11 +145,11 @@ impl Found {
     /// # Errors
     /// [`IoError`].
     pub fn before(&self) -> Result<(Elapsed, bool), IoError> {
-        let mut elapsed = [0.0; 3];
+        let mut elapsed = [0.0; 4];
         self.reader.read_numbers("elapsed", &mut elapsed)?;
-        let [total, wall, cpu] = elapsed;
+        let [total, wall, cpu, checkpoints] = elapsed;
         let solving = Reading { wall, cpu: Some(cpu).filter(|c| !c.is_nan()) };
-        Ok((Elapsed { total, solving }, self.reader.counts("stable")? != [0]))
+        Ok((Elapsed { total, solving, checkpoints }, self.reader.counts("stable")? != [0]))
     }
 }
 

@@ -33,12 +33,12 @@ pub enum RunError {
     },
     /// The run cannot go on.
     #[error(transparent)]
-    Restart(RestartError),
+    Restart(Box<RestartError>),
     /// Results could not be written, and there is a checkpoint to go on from.
     #[error("{cause}; --restart goes on after increment {increments}")]
     Halted {
         /// What failed.
-        cause: IoError,
+        cause: Box<IoError>,
         /// Increments at the checkpoint.
         increments: usize,
     },
@@ -104,12 +104,25 @@ impl RunError {
             },
             Self::Interrupted { restart, .. } => restart.then_some("--restart goes on from there"),
             Self::Restart(error) => Some(error.advice()),
-            Self::Output(IoError::Value(_)) | Self::Halted { cause: IoError::Value(_), .. } => {
-                Some("a result is not finite or too large for single precision: check the units of the scene")
-            }
-            Self::Output(cause) | Self::Halted { cause, .. } => output_advice(cause.system_kind()?),
+            Self::Output(cause) => advice_on(cause),
+            Self::Halted { cause, .. } => advice_on(cause),
             Self::Folder { source, .. } | Self::Replace { source, .. } => output_advice(source.kind()),
         }
+    }
+}
+
+fn advice_on(cause: &IoError) -> Option<&'static str> {
+    match cause {
+        IoError::Value(_) => {
+            Some("a result is not finite or too large for single precision: check the units of the scene")
+        }
+        other => output_advice(other.system_kind()?),
+    }
+}
+
+impl From<RestartError> for RunError {
+    fn from(error: RestartError) -> Self {
+        Self::Restart(Box::new(error))
     }
 }
 

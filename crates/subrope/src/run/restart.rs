@@ -101,13 +101,13 @@ pub fn restart_scene(
     if is_done(&file, &folder) {
         return Ok(None);
     }
-    let found = Found::of(&file, &folder).map_err(RunError::Restart)?;
+    let found = Found::of(&file, &folder).map_err(RunError::from)?;
     if found.is_previous {
         observer.on_warning(&"there is no last checkpoint: the run goes on from the one before");
     }
     let mut model = told(RopeModel::new(&file, options.threads)?, observer);
     let clock = Clock::start();
-    found.restore(&mut model.analysis).map_err(RunError::Restart)?;
+    found.restore(&mut model.analysis).map_err(RunError::from)?;
     observer.on_plan(&Plan::new(&file.scene, &model));
     let totals = model.analysis.totals();
     observer.on_restart(totals.increments, model.analysis.time());

@@ -47,11 +47,13 @@ struct Stopwatch {
 }
 
 impl Stopwatch {
-    fn read(&self) -> Elapsed {
+    /// What it shows; `checkpoints` is the time that they took since the run began or went on \[s\].
+    fn read(&self, checkpoints: f64) -> Elapsed {
         let (total, solving) = (self.started.elapsed().as_secs_f64(), self.clock.read());
-        let Some(Elapsed { total: earlier, solving: before }) = self.before else { return Elapsed { total, solving } };
-        let cpu = solving.cpu.zip(before.cpu).map(|(a, b)| a + b);
-        Elapsed { total: total + earlier, solving: Reading { wall: solving.wall + before.wall, cpu } }
+        let Some(before) = self.before else { return Elapsed { total, solving, checkpoints } };
+        let cpu = solving.cpu.zip(before.solving.cpu).map(|(a, b)| a + b);
+        let solving = Reading { wall: solving.wall + before.solving.wall, cpu };
+        Elapsed { total: total + before.total, solving, checkpoints: checkpoints + before.checkpoints }
     }
 }
 
@@ -82,7 +84,7 @@ impl<'a> Session<'a> {
     ) -> Result<Self, Error> {
         let writes = options.writes.cloned().unwrap_or_default();
         let mut session = Self::with_files(file, model, folder, (clock, &writes, Some(&found.reader)))?;
-        let (before, stable) = found.before().map_err(|error| RunError::Restart(RestartError::Checkpoint(error)))?;
+        let (before, stable) = found.before().map_err(|error| RunError::from(RestartError::Checkpoint(error)))?;
         (session.stopwatch.before, session.stable, session.resumed) = (Some(before), stable, true);
         let increments = model.analysis.totals().increments;
         session.checkpoints = Checkpoints::new(file, folder, &writes, Some(increments));
@@ -113,7 +115,7 @@ impl<'a> Session<'a> {
         let output = Output::open(file, model, &files, Opening { writes, from });
         let output = output.map_err(|error| match (&error, from) {
             (IoError::Output(_), _) | (_, None) => RunError::Output(error),
-            _ => RunError::Restart(RestartError::Results(error)),
+            _ => RestartError::Results(error).into(),
         })?;
         let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
         files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
@@ -154,12 +156,12 @@ impl<'a> Session<'a> {
             resumed,
         };
         let outcome = watch.run_steps(analysis, (steps, half_cycles));
-        let elapsed = stopwatch.read();
+        let elapsed = stopwatch.read(watch.checkpoints.seconds());
         watch.tell_lost_frames();
         let Watch { output, checkpoints, failure, .. } = watch;
         let cycles = output.cycles.rows().to_vec();
         let closed = output.close(scenery, analysis);
-        let elapsed = Elapsed { total: stopwatch.read().total, ..elapsed };
+        let elapsed = Elapsed { total: stopwatch.read(0.0).total, ..elapsed };
         let summary = Summary::new(file, model, Status::of(&outcome), &cycles, elapsed);
         // What failed first is told: files that it spoilt cannot be closed either.
         let written = failure.map_or(closed, Err).and_then(|()| write_json_with(&files.summary, &summary, &writes));
@@ -193,7 +195,7 @@ impl<'a> Session<'a> {
 /// A failing output, with where the run can go on.
 fn halted(cause: IoError, checkpoints: &Checkpoints) -> RunError {
     match checkpoints.last() {
-        Some(increments) => RunError::Halted { cause, increments },
+        Some(increments) => RunError::Halted { cause: Box::new(cause), increments },
         None => RunError::Output(cause),
     }
 }
@@ -325,7 +327,7 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
         self.tell_stability(record);
         let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if self.checkpoints.is_due(analysis.totals().increments, stop) {
-            let elapsed = self.stopwatch.read();
+            let elapsed = self.stopwatch.read(self.checkpoints.seconds());
             let result = self.checkpoints.write(&mut self.output, analysis, self.stable, elapsed);
             self.keep(result)?;
         }
