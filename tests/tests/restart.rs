@@ -42,7 +42,11 @@ impl Scene {
 
     /// Goes on; says whether there was something to do.
     fn restart(&self, out: &Path) -> Result<bool, Error> {
-        let options = RunOptions { folder: Some(out), threads: Some(self.threads), ..RunOptions::default() };
+        self.restart_with(out, None)
+    }
+
+    fn restart_with(&self, out: &Path, writes: Option<&Writes>) -> Result<bool, Error> {
+        let options = RunOptions { folder: Some(out), threads: Some(self.threads), writes, ..RunOptions::default() };
         restart_scene(&self.path(), options, &mut Silent).map(|outcome| outcome.is_some())
     }
 }
@@ -201,13 +205,19 @@ fn multipliers_and_a_rod_go_on() {
     assert!(summary["counts"]["augmentations"].as_u64().unwrap() > 0, "multipliers are to move");
 }
 
+/// A scene of five increments that writes little.
+fn tiny() -> Scene {
+    let text = strand(
+        "[[step]]\nname = \"pull\"\nincrements = { fixed = 5 }\ntension = { elongation = 0.005 }\n[output]\n\
+         fields = [\"displacement\"]\ncheckpoint_every = 2\n",
+    );
+    Scene::new(&text, 1)
+}
+
 /// Makes the n-th operation on a file fail, n = 1, 2, 3, ..., alone and with all that follow.
 #[test]
 fn no_failing_write_loses_anything() {
-    let text = strand(
-        "[[step]]\nname = \"pull\"\nincrements = { fixed = 5 }\ntension = { elongation = 0.005 }\n[output]\nfields = [\"displacement\"]\ncheckpoint_every = 2\n",
-    );
-    let scene = Scene::new(&text, 1);
+    let scene = tiny();
     let out = scene.out("out");
     scene.run(&out, None, &mut Silent).unwrap();
     let reference = content(&out);
@@ -244,6 +254,32 @@ fn no_failing_write_loses_anything() {
     }
     println!("{begun} begun anew, {gone_on} gone on");
     assert!(begun > 10 && gone_on > 30);
+}
+
+/// The same while a run goes on, at the files that are cut back among others.
+#[test]
+fn no_failing_write_of_a_restart_loses_anything() {
+    let scene = tiny();
+    let out = scene.out("out");
+    let mut snapshots = Snapshots::new(&out, 3);
+    scene.run(&out, None, &mut snapshots).unwrap();
+    let reference = content(&out);
+    for first in 1.. {
+        let (failing, left) = (scene.out(&format!("failing_{first}")), scene.out(&format!("left_{first}")));
+        copy(&snapshots.taken[0], &failing);
+        let writes = Writes::failing(first, 1);
+        let ended = scene.restart_with(&failing, Some(&writes));
+        if writes.done() < first {
+            assert!(ended.unwrap());
+            break;
+        }
+        assert!(ended.is_err(), "{first}");
+        copy(&failing, &left);
+        assert!(scene.restart(&left).unwrap(), "{first}");
+        same(&reference, &left);
+        fs::remove_dir_all(&left).unwrap();
+        fs::remove_dir_all(&failing).unwrap();
+    }
 }
 
 fn interrupted(scene: &Scene, out: &Path, increments: usize) -> Error {
