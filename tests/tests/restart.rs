@@ -199,7 +199,8 @@ fn a_slice_with_cycles_goes_on() {
 fn multipliers_and_a_rod_go_on() {
     let steps = "[[step]]\nname = \"press\"\nincrements = { initial = 0.2 }\n\
         prescribe = [{ point = \"ROD\", ux = -0.2 }]\n[output]\ncheckpoint_every = 2\n";
-    let text = rod_on_strand(0.15, steps).replace("friction = 0.15", "friction = 0.15\nmethod = \"augmented\"");
+    let text = rod_on_strand(0.15, steps)
+        .replace("friction = 0.15", "friction = 0.15\nmethod = \"augmented\"\npenetration = 1e-5");
     let reference = check(&text, 1, 3).0;
     let summary: serde_json::Value = serde_json::from_slice(&reference["summary.json"]).unwrap();
     assert!(summary["counts"]["augmentations"].as_u64().unwrap() > 0, "multipliers are to move");

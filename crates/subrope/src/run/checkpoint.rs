@@ -18,6 +18,9 @@ use crate::scene::SceneFile;
 /// Name of the file.
 pub const FILE: &str = "checkpoint";
 
+/// Elements below which checkpoints are rarer.
+const SMALL: usize = 1000;
+
 /// Version that is written into a checkpoint.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -36,8 +39,10 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Of a run that has `last` as its last checkpoint.
-    pub fn new(file: &SceneFile, folder: &Path, writes: &Writes, last: Option<usize>) -> Self {
-        let every = file.scene.output.checkpoint_every;
+    pub fn new(file: &SceneFile, elements: usize, folder: &Path, (writes, last): (&Writes, Option<usize>)) -> Self {
+        // A flush to the disk takes as long as some increments of a small mesh.
+        let usual = if elements < SMALL { 100 } else { 10 };
+        let every = file.scene.output.checkpoint_every.unwrap_or(usual);
         let (path, scene) = (folder.join(FILE), file.hash.clone());
         Self { path, scene, every, writes: writes.clone(), last, spent: Duration::ZERO }
     }

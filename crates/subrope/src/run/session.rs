@@ -69,9 +69,7 @@ impl<'a> Session<'a> {
         // Without the results that it knows a checkpoint is of no use.
         checkpoint::clear(folder).map_err(|(path, source)| RunError::Replace { path, source })?;
         let writes = options.writes.cloned().unwrap_or_default();
-        let mut session = Self::with_files(file, model, folder, (clock, &writes, None))?;
-        session.checkpoints = Checkpoints::new(file, folder, &writes, None);
-        Ok(session)
+        Self::with_files(file, model, folder, (clock, &writes, None))
     }
 
     /// Cuts the files back to what a checkpoint knows.
@@ -86,8 +84,6 @@ impl<'a> Session<'a> {
         let mut session = Self::with_files(file, model, folder, (clock, &writes, Some(&found.reader)))?;
         let (before, stable) = found.before().map_err(|error| RunError::from(RestartError::Checkpoint(error)))?;
         (session.stopwatch.before, session.stable, session.resumed) = (Some(before), stable, true);
-        let increments = model.analysis.totals().increments;
-        session.checkpoints = Checkpoints::new(file, folder, &writes, Some(increments));
         Ok(session)
     }
 
@@ -119,8 +115,9 @@ impl<'a> Session<'a> {
         })?;
         let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
         files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
+        let last = from.map(|_| model.analysis.totals().increments);
         Ok(Self {
-            checkpoints: Checkpoints::new(file, folder, writes, None),
+            checkpoints: Checkpoints::new(file, model.mesh.mesh.cell_count(), folder, (writes, last)),
             file,
             files,
             output,
