@@ -83,6 +83,14 @@ pub enum ErrorClass {
 }
 
 impl IoError {
+    /// A file that was there before and cannot be opened to go on with it: gone, or refused by the system.
+    pub(crate) fn reopened(path: &Path, source: std::io::Error) -> Self {
+        match source.kind() {
+            std::io::ErrorKind::NotFound => Self::Read { path: path.to_path_buf(), source },
+            _ => OutputError::new(path, Action::Open, source).into(),
+        }
+    }
+
     /// What kind of failure the system reported, where it was the system that refused an output.
     pub fn system_kind(&self) -> Option<std::io::ErrorKind> {
         match self {

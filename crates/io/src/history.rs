@@ -96,7 +96,7 @@ impl HistoryWriter {
     /// [`IoError::Output`] when it cannot be cut.
     pub fn resume(path: &Path, columns: &[Column], place: HistoryPlace, writes: &Writes) -> Result<Self, IoError> {
         let unreadable = |source| IoError::Read { path: path.to_path_buf(), source };
-        let file = OpenOptions::new().read(true).write(true).open(path).map_err(unreadable)?;
+        let file = OpenOptions::new().read(true).write(true).open(path).map_err(|e| IoError::reopened(path, e))?;
         let mut writer = Self::new(path, file, columns, writes);
         let begin = writer.read_again(place.length).map_err(unreadable)?;
         if writer.place() != place || !begin.starts_with(header(columns).as_bytes()) {

@@ -116,7 +116,7 @@ impl ResultWriter {
     ) -> Result<Self, IoError> {
         check::mesh(mesh)?;
         check::specs(fields)?;
-        let room = Room::of(path).map_err(|source| IoError::Read { path: path.to_path_buf(), source })?;
+        let room = Room::of(path).map_err(|e| IoError::reopened(path, e))?;
         image.restore(path, rest, writes)?;
         let mut writer = Self::new(path, Counts::of(mesh), fields, room, (options, writes));
         writer.steps = image.steps;
