@@ -22,7 +22,7 @@ ALLOWED = {
     },
     "subrope-io": {
         "subrope-geometry",
-        "hdf5-metno", "nalgebra", "rustix", "serde", "serde_json", "thiserror",
+        "crc32fast", "hdf5-metno", "nalgebra", "rustix", "serde", "serde_json", "thiserror",
     },
 }  # fmt: skip
 # The top crate and the packages that only test and measure may use anything.

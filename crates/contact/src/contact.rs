@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use subrope_fem::analysis::Analysis;
-use subrope_fem::{Configuration, Contribution, Energies, FemError, Request, Sink, Verdict};
+use subrope_fem::{
+    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter, Verdict,
+};
 
 use crate::foot::{Local, Place, Posture, project};
 use crate::kernel::{PairBuffer, PointTerms, terms};
@@ -21,16 +23,16 @@ const STALE: usize = 4;
 /// Contact of a secondary surface, which carries the integration points, with a primary one.
 pub struct Contact {
     name: String,
-    primary: Surface,
-    secondary: Surface,
+    pub(crate) primary: Surface,
+    pub(crate) secondary: Surface,
     positions: Vec<Vector3<f64>>,
     options: ContactOptions,
-    points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     per_patch: usize,
-    pairs: Pairs,
+    pub(crate) pairs: Pairs,
     tree: Tree,
-    rounds: usize,
-    fresh: bool,
+    pub(crate) rounds: usize,
+    pub(crate) fresh: bool,
     /// Whether the primary surface goes on beyond its edges in truth.
     confined: bool,
     buffers: Vec<PairBuffer>,
@@ -41,7 +43,7 @@ type PairList = Vec<(u32, u32)>;
 
 /// Pairs of patches that may touch: the elements of the contribution.
 #[derive(Default)]
-struct Pairs {
+pub(crate) struct Pairs {
     /// First pair of every secondary patch, and the end.
     starts: Vec<usize>,
     primary: Vec<u32>,
@@ -302,7 +304,7 @@ fn refused(cause: ContactError) -> FemError {
 }
 
 impl Pairs {
-    fn new(list: &[(u32, u32)], primary: &Surface, secondary: &Surface) -> Self {
+    pub(crate) fn new(list: &[(u32, u32)], primary: &Surface, secondary: &Surface) -> Self {
         let mut out = Self { node_starts: vec![0], ..Self::default() };
         let mut at = 0;
         for patch in 0..secondary.patch_count() {
@@ -319,7 +321,7 @@ impl Pairs {
         out
     }
 
-    fn list(&self) -> Vec<(u32, u32)> {
+    pub(crate) fn list(&self) -> Vec<(u32, u32)> {
         let patches = (0_u32..).zip(self.starts.windows(2));
         patches.flat_map(|(s, w)| self.primary[w[0]..w[1]].iter().map(move |p| (s, *p))).collect()
     }
@@ -498,6 +500,14 @@ impl Contribution for Contact {
     fn revert(&mut self) {
         self.points.iter_mut().for_each(Point::revert);
         self.rounds = 0;
+    }
+
+    fn save(&self, state: &mut dyn StateWriter) -> Result<(), StateError> {
+        self.save_state(state)
+    }
+
+    fn restore(&mut self, state: &dyn StateReader) -> Result<(), StateError> {
+        self.restore_state(state)
     }
 
     fn review(&mut self) -> Result<Verdict, FemError> {

@@ -21,6 +21,7 @@ pub mod patch;
 mod point;
 pub mod search;
 pub mod spline;
+mod state;
 mod surface;
 
 pub use contact::{Contact, ContactReport, contacts};

@@ -2,6 +2,7 @@
 
 use crate::FemError;
 use crate::solid::SolidFields;
+use crate::state::{StateError, StateReader, StateWriter};
 
 /// How much an assembly must produce.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +151,19 @@ pub trait Contribution: Send {
 
     /// A new attempt starts from the committed state.
     fn revert(&mut self) {}
+
+    /// Keeps all that later increments depend on, as it is right after [`Contribution::commit`]: the committed state, and
+    /// whatever else changes in a run, such as the list of elements. One that remembers nothing keeps nothing.
+    ///
+    /// # Errors
+    /// [`StateError`].
+    fn save(&self, state: &mut dyn StateWriter) -> Result<(), StateError>;
+
+    /// Takes up what [`Contribution::save`] kept of an equal contribution; what follows is the same bit by bit.
+    ///
+    /// # Errors
+    /// [`StateError`]; the contribution is then of no use any more.
+    fn restore(&mut self, state: &dyn StateReader) -> Result<(), StateError>;
 
     /// Makes the list of elements fit for nodal displacements \[mm\]; says whether it has changed, so that the pattern
     /// must be made again. Only contacts have elements that come and go.

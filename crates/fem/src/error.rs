@@ -40,6 +40,9 @@ pub enum FemError {
         /// Whether a shorter increment may help.
         recoverable: bool,
     },
+    /// A state cannot be taken up.
+    #[error(transparent)]
+    State(#[from] crate::StateError),
     /// The linear solver gave up.
     #[error(transparent)]
     Linear(#[from] LinearError),

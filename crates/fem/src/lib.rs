@@ -13,11 +13,13 @@ pub mod linear;
 pub mod parallel;
 mod repeated;
 pub mod solid;
+pub mod state;
 
 pub use assembly::{Assembled, Equations, Evaluation, Jump, System};
 pub use contribution::{Configuration, Contribution, Energies, Product, Request, Sink, Verdict};
 pub use error::FemError;
 pub use repeated::Repeated;
+pub use state::{StateError, StateReader, StateWriter};
 
 /// Temperature when nothing else is said \[K\].
 pub const REFERENCE_TEMPERATURE: f64 = 293.15;

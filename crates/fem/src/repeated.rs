@@ -3,6 +3,7 @@
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Product, Request, Sink, Verdict};
 use crate::solid::SolidFields;
+use crate::state::{StateError, StateReader, StateWriter};
 
 /// A contribution that counts several times: forces, stiffness, energies and what it has dissipated are so many times its
 /// own, and with them reactions and the balance of energy. What it tells of its points and elements is that of one copy.
@@ -114,6 +115,14 @@ impl Contribution for Repeated {
 
     fn revert(&mut self) {
         self.inner.revert();
+    }
+
+    fn save(&self, state: &mut dyn StateWriter) -> Result<(), StateError> {
+        self.inner.save(state)
+    }
+
+    fn restore(&mut self, state: &dyn StateReader) -> Result<(), StateError> {
+        self.inner.restore(state)
     }
 
     fn prepare(&mut self, displacement: &[f64]) -> Result<bool, FemError> {

@@ -1,5 +1,6 @@
 //! Errors of the crate: wrong input, wrong values, failed output.
 
+use crate::checkpoint::CheckpointError;
 use crate::deck::DeckError;
 use std::path::{Path, PathBuf};
 use subrope_geometry::GeometryError;
@@ -14,6 +15,17 @@ pub enum IoError {
     /// A text file of the project (history) is wrong.
     #[error(transparent)]
     Text(#[from] TextError),
+    /// A checkpoint is damaged, or lacks something.
+    #[error(transparent)]
+    Checkpoint(Box<CheckpointError>),
+    /// A result file is not what it was when a checkpoint was written.
+    #[error("{}: its first {length} bytes are not those that the checkpoint knows", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that the checkpoint knows.
+        length: u64,
+    },
     /// A file cannot be read.
     #[error("{}: cannot be read: {source}", path.display())]
     Read {
@@ -53,6 +65,12 @@ pub enum IoError {
     Output(#[from] OutputError),
 }
 
+impl From<CheckpointError> for IoError {
+    fn from(error: CheckpointError) -> Self {
+        Self::Checkpoint(Box::new(error))
+    }
+}
+
 /// What an error means to a caller that must choose an exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ErrorClass {
@@ -65,6 +83,14 @@ pub enum ErrorClass {
 }
 
 impl IoError {
+    /// A file that was there before and cannot be opened to go on with it: gone, or refused by the system.
+    pub(crate) fn reopened(path: &Path, source: std::io::Error) -> Self {
+        match source.kind() {
+            std::io::ErrorKind::NotFound => Self::Read { path: path.to_path_buf(), source },
+            _ => OutputError::new(path, Action::Open, source).into(),
+        }
+    }
+
     /// What kind of failure the system reported, where it was the system that refused an output.
     pub fn system_kind(&self) -> Option<std::io::ErrorKind> {
         match self {
@@ -76,9 +102,13 @@ impl IoError {
     /// Whether the input, the values or the output is at fault.
     pub const fn class(&self) -> ErrorClass {
         match self {
-            Self::Deck(_) | Self::Text(_) | Self::Read { .. } | Self::ReadResult { .. } | Self::NoSuchField { .. } => {
-                ErrorClass::Input
-            }
+            Self::Deck(_)
+            | Self::Text(_)
+            | Self::Checkpoint(_)
+            | Self::Changed { .. }
+            | Self::Read { .. }
+            | Self::ReadResult { .. }
+            | Self::NoSuchField { .. } => ErrorClass::Input,
             Self::Value(_) | Self::Mesh(_) => ErrorClass::Value,
             Self::Output(_) => ErrorClass::Output,
         }
@@ -98,6 +128,8 @@ pub enum Action {
     Rename,
     /// Closing it.
     Close,
+    /// Opening it again.
+    Open,
 }
 
 impl std::fmt::Display for Action {
@@ -108,6 +140,7 @@ impl std::fmt::Display for Action {
             Self::Flush => "flushed",
             Self::Rename => "renamed",
             Self::Close => "closed",
+            Self::Open => "opened again",
         })
     }
 }

@@ -1,9 +1,10 @@
 //! Histories: one row of numbers per increment as comma-separated text.
 
 use crate::error::{Action, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
+use crate::writes::Writes;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Write as _;
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// A column of a history.
@@ -42,6 +43,15 @@ fn has_control(text: &str) -> bool {
     text.chars().any(char::is_control)
 }
 
+/// How far a history had grown: enough to cut it back to there, and to know that it is the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HistoryPlace {
+    /// Bytes.
+    pub length: u64,
+    /// CRC-32 of them.
+    pub checksum: u32,
+}
+
 /// Writes a history row by row; every row is on the disk (handed to the system) when [`row`](Self::row) returns.
 #[derive(Debug)]
 pub struct HistoryWriter {
@@ -50,6 +60,9 @@ pub struct HistoryWriter {
     columns: Vec<Column>,
     line: String,
     failed: bool,
+    length: u64,
+    checksum: crc32fast::Hasher,
+    writes: Writes,
 }
 
 impl HistoryWriter {
@@ -59,14 +72,88 @@ impl HistoryWriter {
     /// [`ValueError::Name`] and [`ValueError::DuplicateName`] for headers that could not be read back;
     /// [`IoError::Output`] when the file cannot be written.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, IoError> {
+        Self::create_with(path, columns, &Writes::default())
+    }
+
+    /// The same, with its operations counted.
+    ///
+    /// # Errors
+    /// As [`HistoryWriter::create`].
+    pub fn create_with(path: &Path, columns: &[Column], writes: &Writes) -> Result<Self, IoError> {
         check_columns(columns)?;
-        let file = File::create(path).map_err(|e| OutputError::new(path, Action::Create, e))?;
-        let mut writer =
-            Self { path: path.to_path_buf(), file, columns: columns.to_vec(), line: String::new(), failed: false };
-        let headers: Vec<String> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
-        writer.line = headers.join(",");
+        let file = writes.pass().and_then(|()| File::create(path));
+        let file = file.map_err(|e| OutputError::new(path, Action::Create, e))?;
+        let mut writer = Self::new(path, file, columns, writes);
+        writer.line = header(columns);
         writer.put()?;
         Ok(writer)
+    }
+
+    /// Goes on with a history that had grown to a place: rows behind it are cut off.
+    ///
+    /// # Errors
+    /// [`IoError::Read`] when the file cannot be read, [`IoError::Changed`] when it is not the one that grew to that place;
+    /// [`IoError::Output`] when it cannot be cut.
+    pub fn resume(path: &Path, columns: &[Column], place: HistoryPlace, writes: &Writes) -> Result<Self, IoError> {
+        let unreadable = |source| IoError::Read { path: path.to_path_buf(), source };
+        let file = OpenOptions::new().read(true).write(true).open(path).map_err(|e| IoError::reopened(path, e))?;
+        let mut writer = Self::new(path, file, columns, writes);
+        let begin = writer.read_again(place.length).map_err(unreadable)?;
+        if writer.place() != place || !begin.starts_with(header(columns).as_bytes()) {
+            return Err(IoError::Changed { path: path.to_path_buf(), length: place.length });
+        }
+        let cut = writes.pass().and_then(|()| {
+            writer.file.set_len(place.length)?;
+            writer.file.seek(SeekFrom::Start(place.length))
+        });
+        cut.map_err(|e| OutputError::new(path, Action::Write, e))?;
+        Ok(writer)
+    }
+
+    fn new(path: &Path, file: File, columns: &[Column], writes: &Writes) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            file,
+            columns: columns.to_vec(),
+            line: String::new(),
+            failed: false,
+            length: 0,
+            checksum: crc32fast::Hasher::new(),
+            writes: writes.clone(),
+        }
+    }
+
+    /// Reads up to `length` bytes and notes them as written; answers the first of them, the header among them.
+    fn read_again(&mut self, length: u64) -> std::io::Result<Vec<u8>> {
+        let (mut begin, mut block) = (Vec::new(), vec![0; 1 << 16]);
+        let mut content = (&self.file).take(length);
+        loop {
+            let count = content.read(&mut block)?;
+            if count == 0 {
+                return Ok(begin);
+            }
+            if self.length < HEADER_LIMIT {
+                begin.extend_from_slice(&block[..count]);
+            }
+            self.length += count as u64;
+            self.checksum.update(&block[..count]);
+        }
+    }
+
+    /// Where the history ends.
+    #[must_use]
+    pub fn place(&self) -> HistoryPlace {
+        HistoryPlace { length: self.length, checksum: self.checksum.clone().finalize() }
+    }
+
+    /// Makes sure that all rows are on the disk itself.
+    ///
+    /// # Errors
+    /// [`IoError::Output`], also after an earlier failure.
+    pub fn flush(&mut self) -> Result<(), IoError> {
+        self.refuse_after_failure()?;
+        let flushed = self.writes.pass().and_then(|()| self.file.sync_data());
+        flushed.map_err(|e| OutputError::new(&self.path, Action::Flush, e).into())
     }
 
     /// Appends one row in the order of the columns; numbers are the shortest text that reads back to the same value.
@@ -96,14 +183,30 @@ impl HistoryWriter {
     }
 
     fn put(&mut self) -> Result<(), IoError> {
-        if self.failed {
-            return Err(OutputError::new(&self.path, Action::Write, OutputCause::EarlierFailure).into());
-        }
+        self.refuse_after_failure()?;
         self.line.push('\n');
-        let written = self.file.write_all(self.line.as_bytes()).and_then(|()| self.file.flush());
+        let written = self.writes.write_all(&self.file, self.line.as_bytes());
         self.failed = written.is_err();
+        self.length += self.line.len() as u64;
+        self.checksum.update(self.line.as_bytes());
         written.map_err(|e| OutputError::new(&self.path, Action::Write, e).into())
     }
+
+    fn refuse_after_failure(&self) -> Result<(), OutputError> {
+        match self.failed {
+            true => Err(OutputError::new(&self.path, Action::Write, OutputCause::EarlierFailure)),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Headers lie within so many bytes.
+const HEADER_LIMIT: u64 = 1 << 20;
+
+/// The first line, without its line break.
+fn header(columns: &[Column]) -> String {
+    let headers: Vec<String> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    headers.join(",")
 }
 
 fn check_columns(columns: &[Column]) -> Result<(), ValueError> {
@@ -215,6 +318,40 @@ mod tests {
         }
         let twice = [Column::new("a", "N"), Column::new("a", "mm")];
         assert!(matches!(HistoryWriter::create(&path, &twice), Err(IoError::Value(ValueError::DuplicateName { .. }))));
+    }
+
+    #[test]
+    fn a_history_goes_on_from_a_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("h.csv");
+        let mut writer = HistoryWriter::create(&path, &columns()).unwrap();
+        writer.row(&[1.0, 2.0]).unwrap();
+        let place = writer.place();
+        writer.row(&[2.0, 3.0]).unwrap();
+        drop(writer);
+        let resume = |place| HistoryWriter::resume(&path, &columns(), place, &Writes::default());
+        let longer = HistoryPlace { length: place.length + 100, ..place };
+        let other = HistoryPlace { checksum: !place.checksum, ..place };
+        for wrong in [longer, other] {
+            assert!(matches!(resume(wrong), Err(IoError::Changed { .. })));
+        }
+        let mut writer = resume(place).unwrap();
+        writer.row(&[5.0, 6.0]).unwrap();
+        assert_eq!(read_history(&path).unwrap().rows, [[1.0, 2.0], [5.0, 6.0]]);
+        let renamed = [Column::new("time", "s"), Column::new("moment", "N mm")];
+        assert!(HistoryWriter::resume(&path, &renamed, place, &Writes::default()).is_err());
+    }
+
+    #[test]
+    fn the_write_that_is_to_fail_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        let writes = Writes::failing(4, 1);
+        let mut writer = HistoryWriter::create_with(&folder.path().join("h.csv"), &columns(), &writes).unwrap();
+        writer.row(&[1.0, 2.0]).unwrap();
+        assert!(writer.row(&[2.0, 3.0]).unwrap_err().to_string().contains("h.csv"));
+        assert!(writer.row(&[2.0, 3.0]).is_err() && writer.flush().is_err(), "nothing more is written");
+        assert_eq!(writes.done(), 4);
+        assert!(read_history(&folder.path().join("h.csv")).unwrap().truncated);
     }
 
     #[test]

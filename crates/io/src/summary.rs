@@ -1,7 +1,8 @@
 //! Summaries: any serialisable value as JSON.
 
-use crate::atomic::write_atomically;
+use crate::atomic::AtomicFile;
 use crate::error::{Action, IoError, OutputError};
+use crate::writes::Writes;
 use serde::Serialize;
 use std::path::Path;
 
@@ -12,10 +13,19 @@ use std::path::Path;
 /// # Errors
 /// [`IoError::Output`] when the value cannot be serialised or the file cannot be written.
 pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), IoError> {
+    write_json_with(path, value, &Writes::default())
+}
+
+/// The same, with its operations counted.
+///
+/// # Errors
+/// As [`write_json`].
+pub fn write_json_with<T: Serialize + ?Sized>(path: &Path, value: &T, writes: &Writes) -> Result<(), IoError> {
     let mut text = serde_json::to_vec_pretty(value).map_err(|e| OutputError::new(path, Action::Write, e))?;
     text.push(b'\n');
-    write_atomically(path, &text)?;
-    Ok(())
+    let mut file = AtomicFile::create_with(path, writes)?;
+    file.write(&text)?;
+    Ok(file.commit()?)
 }
 
 #[cfg(test)]

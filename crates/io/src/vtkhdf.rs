@@ -6,12 +6,15 @@
 //! one of shape (n, 3, 3). The file uses no feature newer than HDF5 1.10, and no file locks, so that a viewer can
 //! look at a running computation.
 
+mod arrays;
 mod check;
+mod image;
 mod mesh;
 mod reader;
 mod storage;
 mod writer;
 
+pub use image::ResultImage;
 pub use mesh::write_mesh_vtkhdf;
 pub use reader::ResultReader;
 pub use writer::ResultWriter;

@@ -5,12 +5,13 @@
 
 use nalgebra::Vector3;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use subrope_geometry::{CellKind, Hex20, Hex27, Hexahedron, Mesh};
 use subrope_io::{
     ErrorClass, FieldSpec, IoError, Location, OutputCause, OutputError, Precision, Provenance, ResultReader,
-    ResultWriter, StaticField, ValueError, WriterOptions, write_mesh_vtkhdf,
+    ResultWriter, StaticField, ValueError, WriterOptions, Writes, write_mesh_vtkhdf,
 };
 
 const EXACT: WriterOptions = WriterOptions { precision: Precision::F64, deflate: Some(4) };
@@ -412,4 +413,74 @@ fn a_killed_run_leaves_its_steps() {
     assert!(!status.unwrap().status.success());
     check(&path, &row(50), 5, 0.0);
     check_with_vtk(&path, &["--steps", "5", "--all-varying"]);
+}
+
+/// Whatever happens to a file after a pause, it comes back as it was and goes on to the same bytes as one that nothing
+/// happened to.
+#[test]
+fn a_file_comes_back_to_a_pause() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = row(40);
+    for options in [EXACT, WriterOptions::default()] {
+        let (path, other) = (folder.path().join("a.vtkhdf"), folder.path().join("b.vtkhdf"));
+        let pause = |file: &mut ResultWriter| {
+            let image = file.pause().unwrap();
+            let mut rest = Vec::new();
+            image.rest().unwrap().read_to_end(&mut rest).unwrap();
+            assert_eq!(rest.len() as u64, image.rest_length());
+            file.go_on().unwrap();
+            (image, rest)
+        };
+        let (mut file, mut straight) = (writer(&path, &mesh, options), writer(&other, &mesh, options));
+        for step in 0..70 {
+            append(&mut file, &mesh, step).unwrap();
+            append(&mut straight, &mesh, step).unwrap();
+            if step % 30 == 10 {
+                let (image, rest) = pause(&mut file);
+                let (same, _) = pause(&mut straight);
+                assert_eq!((image.length, &image.settled), (same.length, &same.settled));
+                assert_eq!(image.settled.len(), (step + 1) * specs().len());
+                // Goes on for a while, then everything but the values of fields is spoilt.
+                for later in step + 1..step + 8 {
+                    append(&mut file, &mesh, later).unwrap();
+                }
+                drop(file);
+                let mut bytes = fs::read(&path).unwrap();
+                let settled = |at: usize| image.settled.iter().any(|[b, n]| (*b..b + n).contains(&(at as u64)));
+                let spoilt = |(at, byte): (usize, &mut u8)| *byte = if settled(at) { *byte } else { 0x55 };
+                bytes.iter_mut().enumerate().for_each(spoilt);
+                // Another file of that name: the library knows those that it has open.
+                fs::remove_file(&path).unwrap();
+                fs::write(&path, bytes).unwrap();
+                assert!(ResultReader::open(&path).is_err());
+                let again = (&image, &mut rest.as_slice() as &mut dyn Read);
+                file = ResultWriter::resume(&path, &mesh, &specs(), again, (options, &Writes::default())).unwrap();
+                assert_eq!(file.steps(), step + 1);
+            }
+        }
+        file.close().unwrap();
+        straight.close().unwrap();
+        check(&path, &mesh, 70, if options == EXACT { 0.0 } else { 1e-6 });
+        assert!(fs::read(&path).unwrap() == fs::read(&other).unwrap(), "the same bytes");
+    }
+}
+
+#[test]
+fn a_file_that_has_become_shorter_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, mesh) = (folder.path().join("a.vtkhdf"), row(3));
+    let mut file = writer(&path, &mesh, EXACT);
+    append(&mut file, &mesh, 0).unwrap();
+    let image = file.pause().unwrap();
+    let mut rest = Vec::new();
+    image.rest().unwrap().read_to_end(&mut rest).unwrap();
+    drop(file);
+    let resume = || {
+        let again = (&image, &mut rest.as_slice() as &mut dyn Read);
+        ResultWriter::resume(&path, &mesh, &specs(), again, (EXACT, &Writes::default())).unwrap_err()
+    };
+    fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(image.length - 1).unwrap();
+    assert!(matches!(resume(), IoError::Changed { .. }));
+    fs::remove_file(&path).unwrap();
+    assert!(matches!(resume(), IoError::Read { .. }));
 }

@@ -69,7 +69,10 @@ pub trait Observer: Send {
     /// A run is about to begin.
     fn on_plan(&mut self, _plan: &Plan) {}
 
-    /// A step begins.
+    /// A run goes on from a checkpoint, after so many increments, at a time \[s\].
+    fn on_restart(&mut self, _increments: usize, _time: f64) {}
+
+    /// A step begins, or goes on.
     fn on_step(&mut self, _step: &StepStart) {}
 
     /// An attempt at an increment ended.

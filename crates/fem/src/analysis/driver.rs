@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::division::{Division, Progress};
 use super::newton::Attempt;
 use super::record::{Control, IncrementRecord, Observer, Phase, Phases, Totals};
 use super::rigid::rigid_motions;
@@ -30,7 +31,7 @@ pub struct Analysis {
     pub(super) system: Option<System>,
     pub(super) prescribed: Vec<bool>,
     /// Prescribed coordinates of the last step that was run.
-    prescribed_before: Vec<bool>,
+    pub(super) prescribed_before: Vec<bool>,
     /// Committed coordinates.
     pub(super) q: Vec<f64>,
     /// Reactions at the start of the step of coordinates that it sets free.
@@ -61,6 +62,10 @@ pub struct Analysis {
     pub(super) phases: Phases,
     pub(super) time: f64,
     pub(super) steps_done: usize,
+    /// How far the step that runs has come.
+    pub(super) progress: Progress,
+    /// Whether that step goes on from a state that was taken up.
+    pub(super) restored: bool,
     pub(super) work: Workspace,
     /// Displacements at which surfaces touched outside the pattern.
     pub(super) outdated_at: Vec<f64>,
@@ -111,6 +116,8 @@ impl Analysis {
             phases: Phases::default(),
             time: 0.0,
             steps_done: 0,
+            progress: Progress::default(),
+            restored: false,
             work: Workspace::default(),
             outdated_at: Vec::new(),
         }
@@ -203,7 +210,14 @@ impl Analysis {
         self.system.as_ref()
     }
 
-    /// Runs one step. On an error the state is that of the last committed increment.
+    /// Steps that are done: the index of the step that runs, or of the next one.
+    #[must_use]
+    pub fn steps_done(&self) -> usize {
+        self.steps_done
+    }
+
+    /// Runs one step, or the rest of it after [`Analysis::restore`]. On an error the state is that of the last committed
+    /// increment.
     ///
     /// # Errors
     /// [`FemError`]; what an observer answers.
@@ -212,6 +226,39 @@ impl Analysis {
     }
 
     fn run_step_here(&mut self, step: &Step, observer: &mut dyn Observer) -> Result<(), FemError> {
+        if !std::mem::take(&mut self.restored) {
+            self.begin(step)?;
+        }
+        let division = Division { step, options: self.options };
+        let mut attempt = 1;
+        while self.progress.done < 1.0 {
+            division.check_count(&self.progress)?;
+            let from = self.progress.done;
+            let to = division.next_end(&self.progress);
+            let mut record = self.record(step, to, attempt);
+            let last_resort = matches!(step.increments, Increments::Fixed(_));
+            match self.attempt(step, Attempt { from, to, last_resort }, &mut record) {
+                Ok(()) => {
+                    self.time += step.duration * (to - from);
+                    division.advance(&mut self.progress, to, record.iterations);
+                    attempt = 1;
+                    if observer.converged(self, &record)? == Control::Stop {
+                        return Err(FemError::Interrupted);
+                    }
+                }
+                Err(cause) => {
+                    self.totals.cutbacks += 1;
+                    observer.failed(&record, &cause);
+                    division.cut(&mut self.progress, cause)?;
+                    attempt += 1;
+                }
+            }
+        }
+        self.steps_done += 1;
+        Ok(())
+    }
+
+    fn begin(&mut self, step: &Step) -> Result<(), FemError> {
         self.release(step);
         self.analyse(step)?;
         // A new step turns elsewhere: nothing to continue.
@@ -224,43 +271,20 @@ impl Analysis {
         for &(c, reaction) in &self.released {
             self.coordinate_load[c as usize] += reaction;
         }
-        let mut division = Division::new(step);
-        let mut attempt = 1;
-        while division.done < 1.0 {
-            division.check_count(step)?;
-            let to = division.next_end();
-            let mut record = self.record(step, &division, to, attempt);
-            let last_resort = matches!(step.increments, Increments::Fixed(_));
-            match self.attempt(step, Attempt { from: division.done, to, last_resort }, &mut record) {
-                Ok(()) => {
-                    self.time += step.duration * (to - division.done);
-                    division.advance(to, record.iterations, &self.options);
-                    attempt = 1;
-                    if observer.converged(self, &record)? == Control::Stop {
-                        return Err(FemError::Interrupted);
-                    }
-                }
-                Err(cause) => {
-                    self.totals.cutbacks += 1;
-                    observer.failed(&record, &cause);
-                    division.cut(step, cause, &self.options)?;
-                    attempt += 1;
-                }
-            }
-        }
-        self.steps_done += 1;
+        self.progress = Progress::new(step);
         Ok(())
     }
 
-    fn record(&self, step: &Step, division: &Division, to: f64, attempt: usize) -> IncrementRecord {
+    fn record(&self, step: &Step, to: f64, attempt: usize) -> IncrementRecord {
+        let Progress { done, count, .. } = self.progress;
         IncrementRecord {
             step: step.name.clone(),
             step_index: self.steps_done + 1,
-            increment: division.count + 1,
+            increment: count + 1,
             attempt,
             fraction: to,
-            length: to - division.done,
-            time: self.time + step.duration * (to - division.done),
+            length: to - done,
+            time: self.time + step.duration * (to - done),
             iterations: 0,
             residuals: Vec::new(),
             negative_pivots: None,
@@ -326,7 +350,7 @@ impl Analysis {
         Ok(())
     }
 
-    fn make_system(&mut self, prescribed: Vec<bool>) -> Result<(), FemError> {
+    pub(super) fn make_system(&mut self, prescribed: Vec<bool>) -> Result<(), FemError> {
         self.system = None;
         let (model, options) = (&self.model, &self.solver_options);
         let system = self
@@ -342,75 +366,4 @@ impl Analysis {
 /// Whether the elements of a contribution have changed.
 fn prepare(contributions: &mut [Box<dyn Contribution>], displacement: &[f64]) -> Result<bool, FemError> {
     contributions.iter_mut().try_fold(false, |changed, c| Ok(c.prepare(displacement)? || changed))
-}
-
-/// How far a step is and how long the next increment shall be.
-struct Division {
-    done: f64,
-    length: f64,
-    count: usize,
-    kind: Increments,
-    /// Fractions that an increment must end at.
-    knots: Vec<f64>,
-}
-
-impl Division {
-    fn new(step: &Step) -> Self {
-        let kind = step.increments;
-        let length = match kind {
-            Increments::Fixed(n) => 1.0 / n as f64,
-            Increments::Automatic { initial, .. } => initial,
-        };
-        Self { done: 0.0, length, count: 0, kind, knots: step.knots.clone() }
-    }
-
-    fn next_end(&self) -> f64 {
-        match self.kind {
-            Increments::Fixed(n) => (self.count + 1) as f64 / n as f64,
-            Increments::Automatic { .. } => {
-                let limit = self.knots.iter().copied().find(|k| *k > self.done * (1.0 + 1e-12)).unwrap_or(1.0);
-                // No crumb before a knot or at the end of a step.
-                if self.done + 1.001 * self.length >= limit { limit } else { self.done + self.length }
-            }
-        }
-    }
-
-    fn advance(&mut self, to: f64, iterations: usize, options: &NewtonOptions) {
-        self.done = to;
-        self.count += 1;
-        if let Increments::Automatic { maximum, .. } = self.kind
-            && iterations <= options.easy_iterations
-        {
-            self.length = (self.length * options.growth).min(maximum);
-        }
-    }
-
-    fn cut(&mut self, step: &Step, cause: FemError, options: &NewtonOptions) -> Result<(), FemError> {
-        if !cause.is_recoverable() {
-            return Err(cause);
-        }
-        let cause = Box::new(cause);
-        match self.kind {
-            Increments::Fixed(_) => {
-                Err(FemError::FixedIncrementFailed { step: step.name.clone(), increment: self.count + 1, cause })
-            }
-            Increments::Automatic { minimum, .. } => {
-                self.length = (self.next_end() - self.done) * options.cutback;
-                if self.length < minimum {
-                    let (step, fraction) = (step.name.clone(), self.done);
-                    return Err(FemError::IncrementTooShort { step, fraction, minimum, cause });
-                }
-                Ok(())
-            }
-        }
-    }
-
-    fn check_count(&self, step: &Step) -> Result<(), FemError> {
-        match self.kind {
-            Increments::Automatic { max_count, .. } if self.count >= max_count => {
-                Err(FemError::TooManyIncrements { step: step.name.clone(), fraction: self.done, limit: max_count })
-            }
-            _ => Ok(()),
-        }
-    }
 }

@@ -1,10 +1,12 @@
 //! Steps, increments and Newton iterations.
 
+mod division;
 mod driver;
 mod line_search;
 mod newton;
 mod record;
 mod rigid;
+mod state;
 mod step;
 mod viscous;
 mod workspace;

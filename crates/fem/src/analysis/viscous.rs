@@ -2,6 +2,7 @@
 
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
+use crate::state::{StateError, StateReader, StateWriter};
 
 /// Dashpots `f = c_i (u - u_n)/dt` on nodes, `c_i` a damping per node \[N s/mm\]. Only as converged as the
 /// increment is short; the energy spent is part of the balance.
@@ -59,4 +60,12 @@ impl Contribution for Viscous {
     }
 
     fn commit(&mut self) {}
+
+    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
+        Ok(())
+    }
+
+    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
+        Ok(())
+    }
 }

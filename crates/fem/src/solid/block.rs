@@ -10,6 +10,7 @@ use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulatio
 use super::kernel::{NodeVector, PointGeometry, mirror};
 use super::{ElementEnergies, SolidFields};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
+use crate::state::{StateError, StateReader, StateWriter};
 use crate::{FemError, parallel};
 
 /// Elements evaluated before their results are scattered, in index order: sums do not depend on threads. Few where one
@@ -274,6 +275,21 @@ impl<const N: usize, L: Law, F: Formulation<N>> Contribution for SolidBlock<N, L
     fn commit(&mut self) {
         self.committed.copy_from_slice(&self.trial);
         self.energies.iter_mut().zip(&self.trial_energies).for_each(|(old, new)| old.advance(new));
+    }
+
+    fn save(&self, state: &mut dyn StateWriter) -> Result<(), StateError> {
+        state.numbers("law", self.committed.len(), &mut self.committed.iter().copied())?;
+        let mut energies = self.energies.iter().flat_map(ElementEnergies::numbers);
+        state.numbers("energies", 3 * self.energies.len(), &mut energies)
+    }
+
+    fn restore(&mut self, state: &dyn StateReader) -> Result<(), StateError> {
+        state.read_numbers("law", &mut self.committed)?;
+        let energies = state.numbers("energies")?;
+        StateError::expect("energies", energies.len(), 3 * self.energies.len())?;
+        let (kept, _) = energies.as_chunks::<3>();
+        self.energies.iter_mut().zip(kept).for_each(|(mine, kept)| *mine = ElementEnergies::of_numbers(kept));
+        Ok(())
     }
 
     fn fields(&self) -> Option<&dyn SolidFields> {

@@ -44,6 +44,16 @@ impl ElementEnergies {
         Self { stored: energies.stored, dissipated_mid: energies.dissipated_mid }
     }
 
+    /// As they are kept.
+    pub(super) fn numbers(&self) -> [f64; 3] {
+        [self.stored, self.dissipated_mid[0], self.dissipated_mid[1]]
+    }
+
+    /// From how they are kept.
+    pub(super) fn of_numbers(kept: &[f64; 3]) -> Self {
+        Self { stored: kept[0], dissipated_mid: [kept[1], kept[2]] }
+    }
+
     /// Commits a trial.
     pub(super) fn advance(&mut self, trial: &Self) {
         self.stored = trial.stored;

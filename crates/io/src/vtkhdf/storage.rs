@@ -2,7 +2,7 @@
 
 use super::{FieldSpec, Precision, Provenance, WriterOptions};
 use crate::error::{Action, IoError, OutputCause, OutputError};
-use hdf5::file::LibraryVersion;
+use hdf5::file::{FileBuilder, LibraryVersion};
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, File, Group, H5Type};
 use std::fs::{self, OpenOptions};
@@ -44,10 +44,19 @@ pub(super) fn create(path: &Path) -> Result<(File, Room), IoError> {
     // The system tells a missing folder or a missing permission more clearly than the library does.
     let room = OpenOptions::new().write(true).create(true).truncate(false).open(path);
     let room = Room { file: room.map_err(|e| OutputError::new(path, Action::Create, e))? };
+    let file = builder().create(path).map_err(failure(path, Action::Create))?;
+    Ok((file, room))
+}
+
+/// Opens a file to go on with it.
+pub(super) fn reopen(path: &Path) -> hdf5::Result<File> {
+    builder().open_rw(path)
+}
+
+fn builder() -> FileBuilder {
     let mut builder = File::with_options();
     builder.with_fapl(|p| p.libver_bounds(LibraryVersion::Earliest, LibraryVersion::V110).file_locking(false));
-    let file = builder.create(path).map_err(failure(path, Action::Create))?;
-    Ok((file, room))
+    builder
 }
 
 /// Room on the disk behind the content of a file.
@@ -59,6 +68,11 @@ pub(super) struct Room {
 }
 
 impl Room {
+    /// Of a file that is there.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        Ok(Self { file: OpenOptions::new().write(true).open(path)? })
+    }
+
     /// Makes sure that `needed` bytes behind the first `used` ones are on the disk.
     pub fn reserve(&self, used: u64, needed: u64) -> io::Result<()> {
         let length = self.file.metadata()?.len();
@@ -152,6 +166,20 @@ impl Rows {
             Precision::F64 => Self::dataset::<f64>(group, spec, tuples, options.deflate)?,
         };
         Ok(Self { dataset, tuples, components: spec.components, precision: options.precision })
+    }
+
+    /// An array that was created before.
+    pub fn of(dataset: Dataset, spec: &FieldSpec, tuples: usize, options: WriterOptions) -> Self {
+        Self { dataset, tuples, components: spec.components, precision: options.precision }
+    }
+
+    /// Address and size of a step; none where a step is not one chunk, which is then written once and stays.
+    pub fn place(&self, step: usize) -> Option<[u64; 2]> {
+        if self.dataset.chunk()?.first() != Some(&self.tuples) {
+            return None;
+        }
+        let chunk = self.dataset.chunk_info(step)?;
+        (chunk.offset.first() == Some(&((step * self.tuples) as u64))).then_some([chunk.addr, chunk.size])
     }
 
     fn dataset<T: H5Type>(

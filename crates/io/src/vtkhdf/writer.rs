@@ -1,16 +1,17 @@
 //! Results step by step.
 
+use super::arrays::Arrays;
 use super::check::{self, Counts};
+use super::image::ResultImage;
 use super::mesh::put_mesh;
-use super::storage::{Room, Rows, create, failure, growing, push, put_texts};
-use super::{FieldSpec, Location, Precision, Provenance, WriterOptions};
+use super::storage::{Room, create, failure, put_texts, reopen};
+use super::{FieldSpec, Precision, Provenance, WriterOptions};
 use crate::error::{Action, IoError, OutputCause, OutputError, ValueError};
-use hdf5::{Attribute, Dataset, File, Group};
+use crate::writes::Writes;
+use hdf5::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use subrope_geometry::Mesh;
-
-/// Arrays of `/VTKHDF/Steps` that are zero at every step, because the mesh does not change.
-const ZERO_OFFSETS: [&str; 4] = ["PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"];
 
 /// Writes a result file step by step. After every [`append`](Self::append) a copy of the file is complete: readers
 /// see all steps so far, also when the run is killed. (With one step VTK shows the fields without a time, with none
@@ -19,6 +20,9 @@ const ZERO_OFFSETS: [&str; 4] = ["PartOffsets", "PointOffsets", "CellOffsets", "
 /// Before a step its room on the disk is taken, so that a full disk leaves the file as it was; [`append`](Self::append)
 /// may then be tried again. Should writing fail in spite of it, nothing more is written to the file, neither by this
 /// type nor when it is dropped.
+///
+/// A process that is killed while it writes may leave a file that does not open. [`pause`](Self::pause) gives what is needed
+/// to bring the file back to where it was then, whatever has happened to it since.
 pub struct ResultWriter {
     path: PathBuf,
     counts: Counts,
@@ -28,7 +32,12 @@ pub struct ResultWriter {
     specs: Vec<FieldSpec>,
     constants: Vec<FieldSpec>,
     room: Room,
-    /// `None` after a failure or a close.
+    /// Address and size of what is written once and stays: the values of fields, step by step.
+    settled: Vec<[u64; 2]>,
+    /// Steps of which that is known.
+    settled_steps: usize,
+    writes: Writes,
+    /// `None` after a failure or a close, and during a pause.
     open: Option<OpenFile>,
 }
 
@@ -50,33 +59,135 @@ impl ResultWriter {
         provenance: &Provenance,
         options: WriterOptions,
     ) -> Result<Self, IoError> {
+        Self::create_with(path, mesh, fields, provenance, (options, &Writes::default()))
+    }
+
+    /// The same, with its operations counted.
+    ///
+    /// # Errors
+    /// As [`ResultWriter::create`].
+    pub fn create_with(
+        path: &Path,
+        mesh: &Mesh,
+        fields: &[FieldSpec],
+        provenance: &Provenance,
+        (options, writes): (WriterOptions, &Writes),
+    ) -> Result<Self, IoError> {
         check::mesh(mesh)?;
         check::options(options)?;
         check::provenance(provenance)?;
         check::specs(fields)?;
-        let counts = Counts::of(mesh);
+        writes.pass().map_err(|e| OutputError::new(path, Action::Create, e))?;
         let (file, room) = create(path)?;
-        let prepared = put_texts(&file, provenance)
-            .and_then(|()| put_mesh(&file, mesh, options))
-            .and_then(|root| Arrays::create(&root, fields, counts, options))
-            .and_then(|arrays| file.flush().map(|()| arrays));
+        let mut writer = Self::new(path, Counts::of(mesh), fields, room, (options, writes));
+        let prepared = writes.pass().map_err(|e| OutputError::new(path, Action::Write, e).into()).and_then(|()| {
+            let arrays = put_texts(&file, provenance)
+                .and_then(|()| put_mesh(&file, mesh, options))
+                .and_then(|root| Arrays::create(&root, fields, writer.counts, options))
+                .and_then(|arrays| file.flush().map(|()| arrays));
+            arrays.map_err(failure(path, Action::Write))
+        });
         match prepared {
-            Ok(arrays) => Ok(Self {
-                path: path.to_path_buf(),
-                counts,
-                options,
-                steps: 0,
-                last_value: None,
-                specs: fields.to_vec(),
-                constants: Vec::new(),
-                room,
-                open: Some(OpenFile { arrays, file }),
-            }),
+            Ok(arrays) => {
+                writer.open = Some(OpenFile { arrays, file });
+                Ok(writer)
+            }
             Err(error) => {
                 // Closing would write the caches over what could not be written completely.
                 std::mem::forget(file);
-                Err(failure(path, Action::Write)(error))
+                Err(error)
             }
+        }
+    }
+
+    /// Brings a file back to where it was when an image of it was taken, and goes on with it.
+    ///
+    /// `rest` gives what [`ResultImage::rest`] gave. The file may have grown since, and need not open any more.
+    ///
+    /// # Errors
+    /// [`IoError::Read`] when there is no such file, [`IoError::Changed`] when it has become shorter;
+    /// [`IoError::ReadResult`] when the file does not hold what the image says; [`IoError::Output`].
+    pub fn resume(
+        path: &Path,
+        mesh: &Mesh,
+        fields: &[FieldSpec],
+        (image, rest): (&ResultImage, &mut dyn Read),
+        (options, writes): (WriterOptions, &Writes),
+    ) -> Result<Self, IoError> {
+        check::mesh(mesh)?;
+        check::specs(fields)?;
+        let room = Room::of(path).map_err(|e| IoError::reopened(path, e))?;
+        image.restore(path, rest, writes)?;
+        let mut writer = Self::new(path, Counts::of(mesh), fields, room, (options, writes));
+        writer.steps = image.steps;
+        writer.last_value = image.last_value;
+        writer.settled.clone_from(&image.settled);
+        writer.settled_steps = image.steps;
+        writer.go_on()?;
+        Ok(writer)
+    }
+
+    fn new(
+        path: &Path,
+        counts: Counts,
+        fields: &[FieldSpec],
+        room: Room,
+        (options, writes): (WriterOptions, &Writes),
+    ) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            counts,
+            options,
+            steps: 0,
+            last_value: None,
+            specs: fields.to_vec(),
+            constants: Vec::new(),
+            room,
+            settled: Vec::new(),
+            settled_steps: 0,
+            writes: writes.clone(),
+            open: None,
+        }
+    }
+
+    /// Closes the file for a moment, so that it is whole on the disk, and takes an image of it. [`go_on`](Self::go_on) opens
+    /// it again; until then nothing may be written.
+    ///
+    /// # Errors
+    /// [`IoError::Output`], also after an earlier failure.
+    pub fn pause(&mut self) -> Result<ResultImage, IoError> {
+        self.write(|open| open.file.flush())?;
+        self.settle();
+        self.shut()?;
+        ResultImage::take(&self.path, &self.settled, (self.steps, self.last_value), &self.writes)
+    }
+
+    /// Opens the file again after a pause.
+    ///
+    /// # Errors
+    /// [`IoError::ReadResult`] when it does not open or has changed.
+    pub fn go_on(&mut self) -> Result<(), IoError> {
+        let failed = |error| failure(&self.path, Action::Open)(error);
+        let file = reopen(&self.path).map_err(failed)?;
+        let opened = file.group("VTKHDF").and_then(|root| {
+            let constants = self.constants.as_slice();
+            Arrays::open(&root, (&self.specs, constants), self.counts, self.options)
+        });
+        let arrays = opened.map_err(failed)?;
+        if arrays.steps().map_err(failed)? != self.steps as i64 {
+            let message = format!("it does not hold the {} step(s) that it held before", self.steps);
+            return Err(IoError::ReadResult { path: self.path.clone(), cause: OutputCause::Hdf5 { message } });
+        }
+        self.open = Some(OpenFile { arrays, file });
+        Ok(())
+    }
+
+    /// Notes where the values of the steps since the last time lie.
+    fn settle(&mut self) {
+        if let Some(open) = &self.open {
+            let steps = self.settled_steps..self.steps;
+            self.settled.extend(steps.flat_map(|step| open.arrays.places(step)));
+            self.settled_steps = self.steps;
         }
     }
 
@@ -109,13 +220,11 @@ impl ResultWriter {
         self.check_step(value, fields)?;
         self.reserve()?;
         let step = self.steps;
-        self.write(|open| {
-            open.arrays.append_data(step, fields)?;
-            // On the disk before any counter refers to it: a run killed in between leaves the earlier steps whole.
-            open.file.flush()?;
-            open.arrays.append_step(step, value)?;
-            open.file.flush()
-        })?;
+        self.write(|open| open.arrays.append_data(step, fields))?;
+        // On the disk before any counter refers to it: a run killed in between leaves the earlier steps whole.
+        self.write(|open| open.file.flush())?;
+        self.write(|open| open.arrays.append_step(step, value))?;
+        self.write(|open| open.file.flush())?;
         self.steps += 1;
         self.last_value = Some(value);
         Ok(())
@@ -141,7 +250,17 @@ impl ResultWriter {
 
     fn finish(&mut self) -> Result<(), IoError> {
         self.write(|open| open.file.flush())?;
+        self.shut()
+    }
+
+    /// Closes the file and gives back the room behind it.
+    fn shut(&mut self) -> Result<(), IoError> {
         let Some(OpenFile { arrays, file }) = self.open.take() else { return Ok(()) };
+        let passed = self.writes.pass();
+        if passed.is_err() {
+            std::mem::forget((arrays, file));
+            return passed.map_err(|e| OutputError::new(&self.path, Action::Close, e).into());
+        }
         let trimmed = self.room.trim(file.size());
         drop(arrays);
         file.close().map_err(failure(&self.path, Action::Close))?;
@@ -151,7 +270,8 @@ impl ResultWriter {
     /// Takes the room of a step on the disk.
     fn reserve(&self) -> Result<(), IoError> {
         let Some(open) = &self.open else { return Ok(()) };
-        let reserved = self.room.reserve(open.file.size(), open.arrays.bytes_per_step());
+        let reserve = || self.room.reserve(open.file.size(), open.arrays.bytes_per_step());
+        let reserved = self.writes.pass().and_then(|()| reserve());
         reserved.map_err(|e| OutputError::new(&self.path, Action::Write, e).into())
     }
 
@@ -173,10 +293,10 @@ impl ResultWriter {
         let Some(open) = &mut self.open else {
             return Err(OutputError::new(&self.path, Action::Write, OutputCause::EarlierFailure).into());
         };
-        action(open).map_err(|error| {
+        let passed = self.writes.pass().map_err(|e| OutputError::new(&self.path, Action::Write, e).into());
+        passed.and_then(|()| action(open).map_err(failure(&self.path, Action::Write))).inspect_err(|_| {
             // Handles are given up, not closed: closing would write half of a step over what is on the disk.
             std::mem::forget(self.open.take());
-            failure(&self.path, Action::Write)(error)
         })
     }
 }
@@ -194,87 +314,4 @@ impl Drop for ResultWriter {
 struct OpenFile {
     arrays: Arrays,
     file: File,
-}
-
-/// The arrays that grow.
-struct Arrays {
-    fields: Vec<(Rows, Dataset)>,
-    constant_offsets: Vec<Dataset>,
-    zero_offsets: Vec<Dataset>,
-    parts: Dataset,
-    values: Dataset,
-    count: Attribute,
-    data_groups: [Group; 2],
-    offset_groups: [Group; 2],
-}
-
-impl Arrays {
-    fn create(root: &Group, specs: &[FieldSpec], counts: Counts, options: WriterOptions) -> hdf5::Result<Self> {
-        let steps = root.create_group("Steps")?;
-        let count = steps.new_attr::<i64>().create("NSteps")?;
-        count.write_scalar(&0_i64)?;
-        let locations = [Location::Point, Location::Cell];
-        let [points, cells] = locations.map(|location| root.create_group(location.group()));
-        let [point_offsets, cell_offsets] = locations.map(|location| steps.create_group(location.offsets()));
-        let mut arrays = Self {
-            fields: Vec::with_capacity(specs.len()),
-            constant_offsets: Vec::new(),
-            zero_offsets: ZERO_OFFSETS.iter().map(|name| growing::<i64>(&steps, name)).collect::<Result<_, _>>()?,
-            parts: growing::<i64>(&steps, "NumberOfParts")?,
-            values: growing::<f64>(&steps, "Values")?,
-            count,
-            data_groups: [points?, cells?],
-            offset_groups: [point_offsets?, cell_offsets?],
-        };
-        for spec in specs {
-            let rows = arrays.rows(spec, counts, options)?;
-            let offsets = arrays.offsets(spec)?;
-            arrays.fields.push((rows, offsets));
-        }
-        Ok(arrays)
-    }
-
-    fn rows(&self, spec: &FieldSpec, counts: Counts, options: WriterOptions) -> hdf5::Result<Rows> {
-        Rows::create(&self.data_groups[spec.location as usize], spec, counts.tuples(spec.location), options)
-    }
-
-    fn offsets(&self, spec: &FieldSpec) -> hdf5::Result<Dataset> {
-        growing::<i64>(&self.offset_groups[spec.location as usize], &spec.name)
-    }
-
-    fn add_constant(
-        &mut self,
-        spec: &FieldSpec,
-        values: &[f64],
-        counts: Counts,
-        options: WriterOptions,
-    ) -> hdf5::Result<()> {
-        self.rows(spec, counts, options)?.append(0, values)?;
-        self.constant_offsets.push(self.offsets(spec)?);
-        Ok(())
-    }
-
-    /// Upper bound of what one step adds to the file: data that do not compress, and the tables of every array.
-    fn bytes_per_step(&self) -> u64 {
-        const TABLES: u64 = 32 << 10;
-        let data: u64 = self.fields.iter().map(|(rows, _)| rows.bytes() + rows.bytes() / 64 + TABLES).sum();
-        data + TABLES * (8 + self.constant_offsets.len() as u64)
-    }
-
-    fn append_data(&self, step: usize, values: &[&[f64]]) -> hdf5::Result<()> {
-        self.fields.iter().zip(values).try_for_each(|((rows, _), values)| rows.append(step, values))
-    }
-
-    /// Offsets, then the step's value, then the number of steps: a reader that sees a step finds its data.
-    fn append_step(&self, step: usize, value: f64) -> hdf5::Result<()> {
-        for (rows, offsets) in &self.fields {
-            push(offsets, step, (step * rows.tuples()) as i64)?;
-        }
-        for offsets in self.constant_offsets.iter().chain(&self.zero_offsets) {
-            push(offsets, step, 0_i64)?;
-        }
-        push(&self.parts, step, 1_i64)?;
-        push(&self.values, step, value)?;
-        self.count.write_scalar(&(step as i64 + 1))
-    }
 }

@@ -44,6 +44,10 @@ pub(super) enum Command {
         /// Threads [default: the scene's solver.threads, or as many as there are processors]
         #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
         threads: Option<u16>,
+        /// Go on from the last checkpoint in the folder of the results: files are cut back to there, and the end is the
+        /// same bit by bit as without the stop. A run that is done is left as it is
+        #[arg(long)]
+        restart: bool,
     },
     /// Run a scene with varied settings: errors against time and memory
     ///

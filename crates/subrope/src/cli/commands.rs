@@ -18,7 +18,9 @@ pub(super) fn run(command: Command) -> Result<(), Error> {
         Command::New { list: true, .. } | Command::New { folder: None, .. } => print(templates::list().as_bytes()),
         Command::New { folder: Some(folder), template, .. } => print(templates::write(&folder, &template)?.as_bytes()),
         Command::Check { scene } => check(&scene),
-        Command::Run { scene, out, threads } => run_scene(&scene, out.as_deref(), threads.map(usize::from)),
+        Command::Run { scene, out, threads, restart } => {
+            run_scene(&scene, out.as_deref(), threads.map(usize::from), restart)
+        }
         Command::Study { file, out, repeats, target, resume } => {
             let options = StudyCommand { out, repeats: repeats.map(usize::from), target, resume };
             study::run(&file, &options)
@@ -71,11 +73,16 @@ fn summary(file: &SceneFile) -> String {
     )
 }
 
-fn run_scene(path: &Path, out: Option<&Path>, threads: Option<usize>) -> Result<(), Error> {
+fn run_scene(path: &Path, out: Option<&Path>, threads: Option<usize>, restart: bool) -> Result<(), Error> {
     let stop = interrupt::flag();
-    let options = RunOptions { folder: out, threads, interrupt: Some(&stop) };
-    let outcome = crate::run::run_scene(path, options, &mut Terminal::new())?;
-    print(closing(&outcome).as_bytes())
+    let options = RunOptions { folder: out, threads, interrupt: Some(&stop), ..RunOptions::default() };
+    let mut terminal = Terminal::new();
+    let outcome = match restart {
+        true => crate::run::restart_scene(path, options, &mut terminal)?,
+        false => Some(crate::run::run_scene(path, options, &mut terminal)?),
+    };
+    let text = outcome.as_ref().map_or_else(|| "this run is done already: nothing to go on with\n".to_owned(), closing);
+    print(text.as_bytes())
 }
 
 /// One sentence of physics, and where the files are.

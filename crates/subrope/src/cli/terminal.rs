@@ -39,6 +39,10 @@ impl Observer for Terminal {
         self.line(&format!("plan\n{}", plan.to_string().trim_end()));
     }
 
+    fn on_restart(&mut self, increments: usize, time: f64) {
+        self.line(&format!("goes on after increment {increments}, at {time} s"));
+    }
+
     fn on_step(&mut self, step: &StepStart) {
         self.bar.set_length(PARTS * step.count as u64);
         self.bar.set_message(step.name.clone());

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 use subrope_fem::analysis::Analysis;
-use subrope_io::{Column, HistoryWriter, IoError};
+use subrope_io::{CheckpointReader, CheckpointWriter, Column, HistoryWriter, IoError};
 
+use super::output::{Opening, save_table};
 use crate::model::{CycleStep, RopeModel};
 
 /// Name of the table.
@@ -76,6 +77,24 @@ impl CycleRow {
             self.contact_friction_mj,
         ]
     }
+
+    fn of_values(v: &[f64; COLUMNS.len()]) -> Self {
+        Self {
+            step: v[0] as usize,
+            cycle: v[1] as usize,
+            low_force_n: v[2],
+            high_force_n: v[3],
+            low_elongation: v[4],
+            high_elongation: v[5],
+            bedding_in: v[6],
+            permanent_elongation: v[7],
+            secant_stiffness_n: v[8],
+            hysteresis_mj: v[9],
+            dissipated_transverse_mj: v[10],
+            dissipated_longitudinal_mj: v[11],
+            contact_friction_mj: v[12],
+        }
+    }
 }
 
 /// Where a half cycle ended.
@@ -100,6 +119,14 @@ impl Turn {
             friction: totals.contact_friction,
         }
     }
+
+    fn values(&self) -> [f64; 6] {
+        [self.force, self.elongation, self.work, self.dissipated[0], self.dissipated[1], self.friction]
+    }
+
+    fn of_values(v: &[f64; 6]) -> Self {
+        Self { force: v[0], elongation: v[1], work: v[2], dissipated: [v[3], v[4]], friction: v[5] }
+    }
 }
 
 /// The table while it grows; rows are on the disk when their cycle is done.
@@ -114,17 +141,36 @@ pub struct CycleTable {
 
 impl CycleTable {
     /// Opens the table of a model with cycles; an older one must not stand beside other results.
-    pub fn open(model: &RopeModel, folder: &Path) -> Result<Self, IoError> {
+    pub fn open(model: &RopeModel, folder: &Path, opening: Opening<'_>) -> Result<Self, IoError> {
         let path = folder.join(FILE);
         let columns: Vec<Column> = COLUMNS.iter().map(|(n, u)| Column::new(*n, *u)).collect();
-        let writer = if model.half_cycles.iter().any(Option::is_some) {
-            Some(HistoryWriter::create(&path, &columns)?)
+        let turn = Turn::default();
+        let mut out = Self { writer: None, rows: Vec::new(), start: turn, before: turn, low: turn, first_low: 0.0 };
+        if model.half_cycles.iter().any(Option::is_some) {
+            out.writer = Some(opening.table(&path, "cycles", &columns)?);
+            opening.from.map_or(Ok(()), |checkpoint| out.restore(checkpoint))?;
         } else {
             let _ = std::fs::remove_file(&path);
-            None
-        };
-        let turn = Turn::default();
-        Ok(Self { writer, rows: Vec::new(), start: turn, before: turn, low: turn, first_low: 0.0 })
+        }
+        Ok(out)
+    }
+
+    /// Keeps how far it has grown.
+    pub fn save(&mut self, to: &mut CheckpointWriter) -> Result<(), IoError> {
+        let Some(table) = &mut self.writer else { return Ok(()) };
+        save_table(table, "cycles", to)?;
+        let (rows, turns) = (&self.rows, [self.start, self.before, self.low]);
+        to.numbers("cycle_rows", COLUMNS.len() * rows.len(), &mut rows.iter().flat_map(CycleRow::values))?;
+        to.numbers("cycle_turns", 6 * turns.len(), &mut turns.iter().flat_map(Turn::values))?;
+        to.numbers("cycle_first_low", 1, &mut std::iter::once(self.first_low))
+    }
+
+    fn restore(&mut self, from: &CheckpointReader) -> Result<(), IoError> {
+        self.rows = from.numbers("cycle_rows")?.as_chunks().0.iter().map(CycleRow::of_values).collect();
+        let mut turns = [[0.0; 6]; 3];
+        from.read_numbers("cycle_turns", turns.as_flattened_mut())?;
+        [self.start, self.before, self.low] = turns.map(|t| Turn::of_values(&t));
+        from.read_numbers("cycle_first_low", std::slice::from_mut(&mut self.first_low))
     }
 
     /// Whether there is a table.

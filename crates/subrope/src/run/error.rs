@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use subrope_fem::FemError;
 use subrope_io::IoError;
 
+use super::restart::RestartError;
 use crate::error::ExitCode;
 
 /// Why a run ended early.
@@ -27,6 +28,19 @@ pub enum RunError {
         increments: usize,
         /// Folder of the results.
         folder: PathBuf,
+        /// Whether there is a checkpoint to go on from.
+        restart: bool,
+    },
+    /// The run cannot go on.
+    #[error(transparent)]
+    Restart(Box<RestartError>),
+    /// Results could not be written, and there is a checkpoint to go on from.
+    #[error("{cause}; --restart goes on after increment {increments}")]
+    Halted {
+        /// What failed.
+        cause: Box<IoError>,
+        /// Increments at the checkpoint.
+        increments: usize,
     },
     /// Results could not be written.
     #[error(transparent)]
@@ -62,7 +76,8 @@ impl RunError {
                 _ => ExitCode::Input,
             },
             Self::Interrupted { .. } => ExitCode::NotConverged,
-            Self::Output(_) | Self::Folder { .. } | Self::Replace { .. } => ExitCode::Output,
+            Self::Restart(_) => ExitCode::Input,
+            Self::Output(_) | Self::Halted { .. } | Self::Folder { .. } | Self::Replace { .. } => ExitCode::Output,
         }
     }
 
@@ -87,13 +102,27 @@ impl RunError {
                 }
                 _ => None,
             },
-            Self::Interrupted { .. } => None,
-            Self::Output(IoError::Value(_)) => {
-                Some("a result is not finite or too large for single precision: check the units of the scene")
-            }
-            Self::Output(error) => output_advice(error.system_kind()?),
+            Self::Interrupted { restart, .. } => restart.then_some("--restart goes on from there"),
+            Self::Restart(error) => Some(error.advice()),
+            Self::Output(cause) => advice_on(cause),
+            Self::Halted { cause, .. } => advice_on(cause),
             Self::Folder { source, .. } | Self::Replace { source, .. } => output_advice(source.kind()),
         }
+    }
+}
+
+fn advice_on(cause: &IoError) -> Option<&'static str> {
+    match cause {
+        IoError::Value(_) => {
+            Some("a result is not finite or too large for single precision: check the units of the scene")
+        }
+        other => output_advice(other.system_kind()?),
+    }
+}
+
+impl From<RestartError> for RunError {
+    fn from(error: RestartError) -> Self {
+        Self::Restart(Box::new(error))
     }
 }
 

@@ -60,6 +60,16 @@ impl CycleStart {
         let sliding = elements.flat_map(|s| (0..s.element_count()).map(move |e| s.element_energies(e).dissipated_mid));
         Self { sliding: sliding.collect(), friction: contact::friction_work(analysis) }
     }
+
+    /// Both, to be kept.
+    pub fn parts(&self) -> (&[[f64; 2]], &[Vec<f64>]) {
+        (&self.sliding, &self.friction)
+    }
+
+    /// From what was kept.
+    pub fn of_parts(sliding: Vec<[f64; 2]>, friction: Vec<Vec<f64>>) -> Self {
+        Self { sliding, friction }
+    }
 }
 
 impl Content {

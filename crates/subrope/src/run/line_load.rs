@@ -9,8 +9,9 @@ use nalgebra::Vector3;
 use serde::Serialize;
 use subrope_fem::analysis::Analysis;
 use subrope_geometry::{Strand, StrandAxis, rope, strand};
-use subrope_io::{Column, HistoryWriter, IoError};
+use subrope_io::{CheckpointWriter, Column, HistoryWriter, IoError};
 
+use super::output::{Opening, save_table};
 use crate::analytic::LaidStrands;
 use crate::contact;
 use crate::model::{ContactCells, MeshModel, RopeModel};
@@ -333,14 +334,19 @@ pub struct LineLoadTable {
 
 impl LineLoadTable {
     /// Opens the table of a model with contact lines; an older one must not stand beside other results.
-    pub fn open(model: &RopeModel, folder: &Path) -> Result<Self, IoError> {
+    pub fn open(model: &RopeModel, folder: &Path, opening: Opening<'_>) -> Result<Self, IoError> {
         let path = folder.join(FILE);
         if !contact::is_any(&model.analysis) || Layers::of(&model.mesh).is_empty() {
             let _ = std::fs::remove_file(&path);
             return Ok(Self { writer: None });
         }
         let columns: Vec<Column> = COLUMNS.iter().map(|(n, u)| Column::new(*n, *u)).collect();
-        Ok(Self { writer: Some(HistoryWriter::create(&path, &columns)?) })
+        Ok(Self { writer: Some(opening.table(&path, "line_load", &columns)?) })
+    }
+
+    /// Keeps how far it has grown.
+    pub fn save(&mut self, to: &mut CheckpointWriter) -> Result<(), IoError> {
+        self.writer.as_mut().map_or(Ok(()), |table| save_table(table, "line_load", to))
     }
 
     /// Whether there is a table.

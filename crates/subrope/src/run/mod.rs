@@ -1,15 +1,20 @@
 //! Running a scene: results on disk while it goes on, a summary at the end.
 
+mod checkpoint;
 mod clock;
 mod columns;
 mod cycles;
 mod error;
+#[cfg(feature = "hdf5")]
+mod field_file;
 #[cfg(feature = "hdf5")]
 mod fields;
 mod findings;
 #[cfg(feature = "hdf5")]
 mod last_trial;
 mod line_load;
+mod output;
+mod restart;
 mod sections;
 mod session;
 mod strands;
@@ -20,12 +25,15 @@ pub use error::RunError;
 pub(crate) use error::output_advice;
 pub use findings::{Findings, Mode, ModeFinding, PeakDensities, Zone};
 pub use line_load::{AnalyticLineLoad, ContactLine, LineLoadSummary, LineSlice, contact_lines};
+pub use restart::{RestartError, restart_scene};
 pub use sections::{SectionShape, section_shapes};
 pub use strands::{StrandSummary, strands};
 pub use summary::{Status, Summary, SymmetrySummary};
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+
+use subrope_io::Writes;
 
 use crate::Error;
 use crate::model::RopeModel;
@@ -44,6 +52,8 @@ pub struct RunOptions<'a> {
     pub threads: Option<usize>,
     /// Set from elsewhere to stop after the current increment.
     pub interrupt: Option<&'a AtomicBool>,
+    /// Counts operations on files, for tests of what a failing one leaves behind.
+    pub writes: Option<&'a Writes>,
 }
 
 /// Files of a run.
@@ -71,23 +81,34 @@ pub struct RunOutcome {
 }
 
 /// Runs a scene file: `results.vtkhdf`, `history.csv`, `cycles.csv` and `line_load.csv` where there are cycles and contact
-/// lines (all readable while it runs), and `summary.json`.
+/// lines (all readable while it runs), and `summary.json`; and checkpoints, from which [`restart_scene`] goes on.
 ///
 /// # Errors
 /// [`Error::Scene`], [`Error::Model`] for what is wrong in the input; [`Error::Run`] when no equilibrium is found (files
 /// hold everything up to the last converged increment) or when output fails.
 pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observer) -> Result<RunOutcome, Error> {
     let file = SceneFile::load(path)?;
-    let mut model = RopeModel::new(&file, options.threads)?;
-    for ignored in &model.ignored {
-        let place = format!("{}:{}", ignored.file.display(), ignored.line);
-        observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
-    }
+    let mut model = told(RopeModel::new(&file, options.threads)?, observer);
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
     let clock = Clock::start();
     // Everything that can be refused is refused before files of an earlier run are replaced.
     model.check_steps()?;
     observer.on_plan(&Plan::new(&file.scene, &model));
-    let session = Session::open(&file, &model, &folder, clock)?;
+    if folder.join(checkpoint::FILE).exists() {
+        observer.on_warning(&format!("the run that stopped in {} is replaced", folder.display()));
+    }
+    let session = Session::open(&file, &model, &folder, (clock, &options))?;
     session.run(&mut model, options.interrupt, observer)
+}
+
+/// Name of the file with the numbers at the end.
+const SUMMARY: &str = "summary.json";
+
+/// Tells what of a deck is not read.
+fn told(model: RopeModel, observer: &mut dyn Observer) -> RopeModel {
+    for ignored in &model.ignored {
+        let place = format!("{}:{}", ignored.file.display(), ignored.line);
+        observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));
+    }
+    model
 }

@@ -6,141 +6,166 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use subrope_fem::FemError;
-use subrope_fem::analysis::{Analysis, Control, IncrementRecord};
-use subrope_io::{HistoryWriter, IoError, write_json};
+use subrope_fem::analysis::{Analysis, Control, IncrementRecord, Step};
+use subrope_io::{CheckpointReader, IoError, Writes, write_json_with};
 
-use super::clock::Clock;
-use super::cycles::CycleTable;
-use super::line_load::{FrameTime, LineLoadTable};
+use super::checkpoint::{self, Checkpoints, Found};
+use super::clock::{Clock, Reading};
+use super::output::{Opening, Output, Scenery};
 use super::summary::{Elapsed, Status, Summary};
-use super::{RunError, RunFiles, RunOutcome, columns, cycles, line_load};
+use super::{RestartError, RunError, RunFiles, RunOptions, RunOutcome, SUMMARY, cycles, line_load};
 use crate::Error;
-use crate::model::{ContactCells, CycleStep, MeshModel, RopeModel};
+use crate::model::{CycleStep, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
 use crate::scene::SceneFile;
 
 #[cfg(feature = "hdf5")]
-use super::fields::{self, CycleStart, FieldArray, Place};
+use super::field_file::RESULTS;
 #[cfg(feature = "hdf5")]
 use super::last_trial;
-#[cfg(feature = "hdf5")]
-use subrope_io::{FieldSpec, Precision, Provenance, ResultWriter, WriterOptions};
-
-/// Name of the file with the fields.
-const RESULTS: &str = "results.vtkhdf";
 
 /// Files of a run and what it was asked.
 pub struct Session<'a> {
     file: &'a SceneFile,
     files: RunFiles,
     output: Output,
+    checkpoints: Checkpoints,
+    writes: Writes,
+    stopwatch: Stopwatch,
+    /// Whether the branch is stable so far.
+    stable: bool,
+    /// Whether a step goes on.
+    resumed: bool,
+}
+
+/// Time of a run, with what was spent before it was stopped.
+#[derive(Clone, Copy)]
+struct Stopwatch {
     started: Instant,
     clock: Clock,
+    before: Option<Elapsed>,
 }
 
-/// Open files.
-struct Output {
-    history: HistoryWriter,
-    cycles: CycleTable,
-    line_loads: LineLoadTable,
-    every: usize,
-    /// Increments of the current step since the last frame.
-    waiting: usize,
-    /// The last increment.
-    at: FrameTime,
-    #[cfg(feature = "hdf5")]
-    fields: Fields,
-}
-
-/// The file with the fields.
-#[cfg(feature = "hdf5")]
-struct Fields {
-    results: ResultWriter,
-    arrays: Vec<FieldArray>,
-    /// Where the cycle that runs began, if a field wants to know.
-    cycle: Option<CycleStart>,
-    /// Frames left out because a stress could not be evaluated again.
-    lost_frames: usize,
+impl Stopwatch {
+    /// What it shows; `checkpoints` is the time that they took since the run began or went on \[s\].
+    fn read(&self, checkpoints: f64) -> Elapsed {
+        let (total, solving) = (self.started.elapsed().as_secs_f64(), self.clock.read());
+        let Some(before) = self.before else { return Elapsed { total, solving, checkpoints } };
+        let cpu = solving.cpu.zip(before.solving.cpu).map(|(a, b)| a + b);
+        let solving = Reading { wall: solving.wall + before.solving.wall, cpu };
+        Elapsed { total: total + before.total, solving, checkpoints: checkpoints + before.checkpoints }
+    }
 }
 
 impl<'a> Session<'a> {
-    /// Makes the folder and opens the files; `clock` runs since the solution began.
-    pub fn open(file: &'a SceneFile, model: &RopeModel, folder: &Path, clock: Clock) -> Result<Self, Error> {
+    /// Makes the folder and opens the files anew; the clock runs since the solution began.
+    pub fn open(
+        file: &'a SceneFile,
+        model: &RopeModel,
+        folder: &Path,
+        (clock, options): (Clock, &RunOptions<'_>),
+    ) -> Result<Self, Error> {
         std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { path: folder.to_path_buf(), source })?;
+        // Without the results that it knows a checkpoint is of no use.
+        checkpoint::clear(folder).map_err(|(path, source)| RunError::Replace { path, source })?;
+        let writes = options.writes.cloned().unwrap_or_default();
+        Self::with_files(file, model, folder, (clock, &writes, None))
+    }
+
+    /// Cuts the files back to what a checkpoint knows.
+    pub fn resume(
+        file: &'a SceneFile,
+        model: &RopeModel,
+        folder: &Path,
+        (clock, options): (Clock, &RunOptions<'_>),
+        found: &Found,
+    ) -> Result<Self, Error> {
+        let writes = options.writes.cloned().unwrap_or_default();
+        let mut session = Self::with_files(file, model, folder, (clock, &writes, Some(&found.reader)))?;
+        let (before, stable) = found.before().map_err(|error| RunError::from(RestartError::Checkpoint(error)))?;
+        (session.stopwatch.before, session.stable, session.resumed) = (Some(before), stable, true);
+        Ok(session)
+    }
+
+    fn with_files(
+        file: &'a SceneFile,
+        model: &RopeModel,
+        folder: &Path,
+        (clock, writes, from): (Clock, &Writes, Option<&CheckpointReader>),
+    ) -> Result<Self, Error> {
         let mut files = RunFiles {
             folder: folder.to_path_buf(),
-            results: cfg!(feature = "hdf5").then(|| folder.join(RESULTS)),
+            #[cfg(feature = "hdf5")]
+            results: Some(folder.join(RESULTS)),
+            #[cfg(not(feature = "hdf5"))]
+            results: None,
             history: folder.join("history.csv"),
             tables: Vec::new(),
-            summary: folder.join("summary.json"),
+            summary: folder.join(SUMMARY),
         };
+        checkpoint::remove_parts(folder, &files.summary);
         // What an earlier run wrote at its end must not stand beside new results.
         remove(&files.summary)?;
         #[cfg(feature = "hdf5")]
         remove(&folder.join(last_trial::FILE))?;
-        let output = Output::open(file, model, &files).map_err(RunError::Output)?;
+        let output = Output::open(file, model, &files, Opening { writes, from });
+        let output = output.map_err(|error| match (&error, from) {
+            (IoError::Output(_), _) | (_, None) => RunError::Output(error),
+            _ => RestartError::Results(error).into(),
+        })?;
         let tables = [(line_load::FILE, output.line_loads.is_open()), (cycles::FILE, output.cycles.is_open())];
         files.tables = tables.into_iter().filter(|(_, open)| *open).map(|(name, _)| folder.join(name)).collect();
-        Ok(Self { file, files, output, started: Instant::now(), clock })
+        let last = from.map(|_| model.analysis.totals().increments);
+        Ok(Self {
+            checkpoints: Checkpoints::new(file, model.mesh.mesh.cell_count(), folder, (writes, last)),
+            file,
+            files,
+            output,
+            writes: writes.clone(),
+            stopwatch: Stopwatch { started: Instant::now(), clock, before: None },
+            stable: true,
+            resumed: false,
+        })
     }
 
-    /// Runs all steps.
+    /// Runs all steps, or what is left of them.
     pub fn run(
         self,
         model: &mut RopeModel,
         interrupt: Option<&AtomicBool>,
         observer: &mut dyn Observer,
     ) -> Result<RunOutcome, Error> {
-        let Self { file, files, output, started, clock } = self;
-        let count = model.steps.len();
+        let Self { file, files, output, checkpoints, writes, stopwatch, stable, resumed } = self;
         let RopeModel { mesh, contact_cells, analysis, steps, half_cycles, .. } = &mut *model;
         let scenery = Scenery { mesh, cells: contact_cells };
         let mut watch = Watch {
             output,
+            checkpoints,
             scenery,
             observer,
             interrupt,
             failure: None,
-            attempt_start: started,
+            stopwatch,
+            attempt_start: stopwatch.started,
             cutbacks: 0,
-            stable: true,
+            stable,
             half_cycle: None,
+            resumed,
         };
-        let mut outcome = Ok(());
-        for (index, step) in steps.iter().enumerate() {
-            let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
-            watch.observer.on_step(&start);
-            watch.attempt_start = Instant::now();
-            watch.half_cycle = half_cycles[index];
-            watch.begin_step(analysis);
-            outcome = analysis.run_step(step, &mut watch);
-            if outcome.is_ok() {
-                outcome = watch.end_step(analysis);
-            }
-            if outcome.is_err() {
-                break;
-            }
-        }
-        let solving = clock.read();
-        let failure = watch.failure.take();
-        #[cfg(feature = "hdf5")]
-        if watch.output.fields.lost_frames > 0 {
-            let lost = watch.output.fields.lost_frames;
-            watch
-                .observer
-                .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
-        }
+        let outcome = watch.run_steps(analysis, (steps, half_cycles));
+        let elapsed = stopwatch.read(watch.checkpoints.seconds());
+        watch.tell_lost_frames();
+        let Watch { output, checkpoints, failure, .. } = watch;
+        let cycles = output.cycles.rows().to_vec();
+        let closed = output.close(scenery, analysis);
+        let elapsed = Elapsed { total: stopwatch.read(0.0).total, ..elapsed };
+        let summary = Summary::new(file, model, Status::of(&outcome), &cycles, elapsed);
+        // What failed first is told: files that it spoilt cannot be closed either.
+        let written = failure.map_or(closed, Err).and_then(|()| write_json_with(&files.summary, &summary, &writes));
+        written.map_err(|cause| halted(cause, &checkpoints))?;
+        let totals = model.analysis.totals();
+        let (increments, iterations, restart) = (totals.increments, totals.iterations, checkpoints.last().is_some());
         let interrupted = matches!(outcome, Err(FemError::Interrupted));
-        let cycles = watch.output.cycles.rows().to_vec();
-        let closed = watch.output.close(scenery, analysis);
-        let status = Status::of(&outcome);
-        let elapsed = Elapsed { total: started.elapsed().as_secs_f64(), solving };
-        let summary = Summary::new(file, model, status, &cycles, elapsed);
-        if let Some(error) = failure {
-            return Err(RunError::Output(error).into());
-        }
-        closed.map_err(RunError::Output)?;
-        write_json(&files.summary, &summary).map_err(RunError::Output)?;
         match outcome {
             Err(cause) if !interrupted => {
                 // The run has failed already: that this file cannot be written is no more than a pity.
@@ -148,18 +173,27 @@ impl<'a> Session<'a> {
                 if let Err(error) = last_trial::write(&files.folder, &model.mesh, &model.analysis) {
                     observer.on_warning(&format!("no {}: {error}", last_trial::FILE));
                 }
-                let kept = (model.analysis.totals().increments > 0).then(|| files.folder.clone());
+                let kept = (increments > 0).then(|| files.folder.clone());
                 Err(RunError::Solver { cause: Box::new(cause), kept }.into())
             }
             _ => {
-                let finish = finish(&model.analysis, started, interrupted);
-                observer.on_finish(&finish);
+                let seconds = stopwatch.started.elapsed().as_secs_f64();
+                observer.on_finish(&Finish { increments, iterations, seconds, interrupted });
                 if interrupted {
-                    return Err(RunError::Interrupted { increments: finish.increments, folder: files.folder }.into());
+                    return Err(RunError::Interrupted { increments, folder: files.folder, restart }.into());
                 }
+                checkpoints.remove();
                 Ok(RunOutcome { files, summary })
             }
         }
+    }
+}
+
+/// A failing output, with where the run can go on.
+fn halted(cause: IoError, checkpoints: &Checkpoints) -> RunError {
+    match checkpoints.last() {
+        Some(increments) => RunError::Halted { cause: Box::new(cause), increments },
+        None => RunError::Output(cause),
     }
 }
 
@@ -173,175 +207,56 @@ fn remove(path: &Path) -> Result<(), RunError> {
     }
 }
 
-fn finish(analysis: &Analysis, started: Instant, interrupted: bool) -> Finish {
-    let totals = analysis.totals();
-    Finish {
-        increments: totals.increments,
-        iterations: totals.iterations,
-        seconds: started.elapsed().as_secs_f64(),
-        interrupted,
-    }
-}
-
-impl Output {
-    fn open(file: &SceneFile, model: &RopeModel, files: &RunFiles) -> Result<Self, IoError> {
-        let mut out = Self {
-            history: HistoryWriter::create(&files.history, &columns::columns(model))?,
-            cycles: CycleTable::open(model, &files.folder)?,
-            line_loads: LineLoadTable::open(model, &files.folder)?,
-            every: file.scene.output.every,
-            waiting: 0,
-            at: FrameTime::default(),
-            #[cfg(feature = "hdf5")]
-            fields: Fields::open(file, model, &files.folder)?,
-        };
-        let scenery = Scenery { mesh: &model.mesh, cells: &model.contact_cells };
-        match out.frame(scenery, &model.analysis) {
-            Ok(()) => Ok(out),
-            Err(error) => {
-                // Without a step the files are of no use, and readers complain of them.
-                drop(out);
-                let opened = [Some(files.history.clone()), files.results.clone()];
-                for path in opened.into_iter().flatten().chain([files.folder.join(line_load::FILE)]) {
-                    let _ = std::fs::remove_file(path);
-                }
-                Err(error)
-            }
-        }
-    }
-
-    /// Notes where a cycle begins; `half` is what the step that begins is half of.
-    fn begin_step(&mut self, half: Option<&CycleStep>, analysis: &Analysis) {
-        if let Some(step) = half {
-            self.cycles.begin(step, analysis);
-        }
-        #[cfg(feature = "hdf5")]
-        self.fields.begin_step(half, analysis);
-    }
-
-    fn increment(
-        &mut self,
-        scenery: Scenery<'_>,
-        analysis: &Analysis,
-        record: &IncrementRecord,
-        cutbacks: usize,
-        frames: bool,
-    ) -> Result<(), IoError> {
-        self.history.row(&columns::row(scenery.mesh, analysis, record, cutbacks))?;
-        self.at = FrameTime { step: record.step_index, increment: record.increment };
-        self.waiting += 1;
-        if frames && self.waiting >= self.every {
-            self.frame(scenery, analysis)?;
-        }
-        Ok(())
-    }
-
-    /// Leaves out the frame of a step.
-    fn skip_frame(&mut self) {
-        self.waiting = 0;
-    }
-
-    /// Writes what is still waiting.
-    fn end_step(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        if self.waiting > 0 {
-            self.frame(scenery, analysis)?;
-        }
-        Ok(())
-    }
-
-    fn frame(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        self.waiting = 0;
-        self.line_loads.frame(self.at, scenery.mesh, scenery.cells, analysis)?;
-        #[cfg(feature = "hdf5")]
-        self.fields.frame(scenery, analysis)?;
-        Ok(())
-    }
-
-    fn close(mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        self.end_step(scenery, analysis)?;
-        #[cfg(feature = "hdf5")]
-        self.fields.results.close()?;
-        Ok(())
-    }
-}
-
-#[cfg(feature = "hdf5")]
-impl Fields {
-    fn open(file: &SceneFile, model: &RopeModel, folder: &Path) -> Result<Self, IoError> {
-        let scene = &file.scene;
-        let arrays = fields::arrays(&scene.output.fields, model);
-        let specs: Vec<FieldSpec> = arrays.iter().map(spec).collect();
-        let provenance: Provenance = [
-            ("version", env!("CARGO_PKG_VERSION").to_string()),
-            ("scene", file.text.clone()),
-            ("scene_hash", file.hash.clone()),
-        ]
-        .map(|(name, text)| (name.to_string(), text))
-        .into();
-        let options = WriterOptions {
-            precision: match scene.output.precision {
-                crate::scene::Precision::F32 => Precision::F32,
-                crate::scene::Precision::F64 => Precision::F64,
-            },
-            deflate: (scene.output.compression > 0).then_some(scene.output.compression),
-        };
-        let results = ResultWriter::create(&folder.join(RESULTS), &model.mesh.mesh, &specs, &provenance, options)?;
-        Ok(Self { results, arrays, cycle: None, lost_frames: 0 })
-    }
-
-    fn begin_step(&mut self, half: Option<&CycleStep>, analysis: &Analysis) {
-        match half {
-            None => self.cycle = None,
-            Some(step) if !step.half.rising && fields::want_cycles(&self.arrays) => {
-                self.cycle = Some(CycleStart::new(analysis));
-            }
-            Some(_) => {}
-        }
-    }
-
-    fn frame(&mut self, scenery: Scenery<'_>, analysis: &Analysis) -> Result<(), IoError> {
-        let cycle = self.cycle.as_ref();
-        // The committed state was evaluated a moment ago: a law that fails here would be at the very edge of its range.
-        let Ok(values) = fields::values(&self.arrays, scenery.mesh, scenery.cells, analysis, cycle) else {
-            self.lost_frames += 1;
-            return Ok(());
-        };
-        let slices: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
-        self.results.append(analysis.time(), &slices)
-    }
-}
-
-#[cfg(feature = "hdf5")]
-fn spec(array: &FieldArray) -> FieldSpec {
-    match array.place {
-        Place::Node => FieldSpec::point(array.name, array.components),
-        Place::Element => FieldSpec::cell(array.name, array.components),
-    }
-}
-
-/// What does not change during a run.
-#[derive(Clone, Copy)]
-struct Scenery<'a> {
-    mesh: &'a MeshModel,
-    cells: &'a [ContactCells],
-}
-
 /// Passes what the kernel tells to the files and to the observer.
 struct Watch<'a> {
     output: Output,
+    checkpoints: Checkpoints,
     scenery: Scenery<'a>,
     observer: &'a mut dyn Observer,
     interrupt: Option<&'a AtomicBool>,
     failure: Option<IoError>,
+    stopwatch: Stopwatch,
     attempt_start: Instant,
     cutbacks: usize,
     /// Whether the last converged tangent had no negative pivot.
     stable: bool,
     /// The half cycle that runs.
     half_cycle: Option<CycleStep>,
+    /// Whether the step that comes goes on.
+    resumed: bool,
 }
 
 impl Watch<'_> {
+    /// All steps that are not done.
+    fn run_steps(
+        &mut self,
+        analysis: &mut Analysis,
+        (steps, half_cycles): (&[Step], &[Option<CycleStep>]),
+    ) -> Result<(), FemError> {
+        let count = steps.len();
+        for (index, step) in steps.iter().enumerate().skip(analysis.steps_done()) {
+            let start = StepStart { index, count, name: step.name.clone(), duration: step.duration };
+            self.observer.on_step(&start);
+            self.attempt_start = Instant::now();
+            self.half_cycle = half_cycles[index];
+            if !std::mem::take(&mut self.resumed) {
+                self.begin_step(analysis);
+            }
+            analysis.run_step(step, self)?;
+            self.end_step(analysis)?;
+        }
+        Ok(())
+    }
+
+    fn tell_lost_frames(&mut self) {
+        #[cfg(feature = "hdf5")]
+        if self.output.fields.lost_frames > 0 {
+            let lost = self.output.fields.lost_frames;
+            self.observer
+                .on_warning(&format!("{lost} frame(s) are missing in {RESULTS}: no stress at the committed state"));
+        }
+    }
+
     fn keep<T>(&mut self, result: Result<T, IoError>) -> Result<T, FemError> {
         result.map_err(|error| {
             let text = error.to_string();
@@ -408,6 +323,11 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
         self.tell(record, Outcome::Converged);
         self.tell_stability(record);
         let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        if self.checkpoints.is_due(analysis.totals().increments, stop) {
+            let elapsed = self.stopwatch.read(self.checkpoints.seconds());
+            let result = self.checkpoints.write(&mut self.output, analysis, self.stable, elapsed);
+            self.keep(result)?;
+        }
         Ok(if stop { Control::Stop } else { Control::Continue })
     }
 

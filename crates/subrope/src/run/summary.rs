@@ -209,6 +209,8 @@ pub(super) struct Elapsed {
     pub total: f64,
     /// All steps.
     pub solving: Reading,
+    /// Writing checkpoints \[s\]; part of the others.
+    pub checkpoints: f64,
 }
 
 /// Wall-clock time; `solving_cpu` apart.
@@ -230,6 +232,8 @@ pub struct SecondsSummary {
     pub factorisation: f64,
     /// Solves.
     pub solution: f64,
+    /// Writing checkpoints, part of `solving`.
+    pub checkpoints: f64,
 }
 
 impl Summary {
@@ -414,5 +418,6 @@ fn times(model: &RopeModel, elapsed: Elapsed) -> SecondsSummary {
         assembly: phase(Phase::Assembly),
         factorisation: phase(Phase::Factorisation),
         solution: phase(Phase::Solution),
+        checkpoints: elapsed.checkpoints,
     }
 }

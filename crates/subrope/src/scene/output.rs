@@ -19,6 +19,10 @@ pub struct Output {
     /// Write every n-th increment \[-\]; the last of a step is always written.
     #[schemars(range(min = 1))]
     pub every: usize,
+    /// Write a checkpoint every n-th increment \[-\], for `--restart`; 0: none. When left out 10, and 100 for meshes of less
+    /// than 1000 elements, whose increments cost little.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checkpoint_every: Option<usize>,
     /// Digits of the fields: "f32" or "f64".
     pub precision: Precision,
     /// Compression of the fields, from 0 (none) to 9 \[-\].
@@ -28,7 +32,14 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { folder: None, fields: Field::ALL.to_vec(), every: 1, precision: Precision::F32, compression: 4 }
+        Self {
+            folder: None,
+            fields: Field::ALL.to_vec(),
+            every: 1,
+            checkpoint_every: None,
+            precision: Precision::F32,
+            compression: 4,
+        }
     }
 }
 

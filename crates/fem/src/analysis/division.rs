@@ -1,0 +1,90 @@
+//! How a step is divided into increments.
+
+use super::step::{Increments, NewtonOptions, Step};
+use crate::FemError;
+
+/// How far a step is and how long the next increment shall be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Fraction of the step.
+    pub done: f64,
+    /// Fraction of the step.
+    pub length: f64,
+    /// Converged increments.
+    pub count: usize,
+}
+
+impl Progress {
+    /// A step begins.
+    pub fn new(step: &Step) -> Self {
+        let length = match step.increments {
+            Increments::Fixed(n) => 1.0 / n as f64,
+            Increments::Automatic { initial, .. } => initial,
+        };
+        Self { done: 0.0, length, count: 0 }
+    }
+}
+
+/// The rules of a step.
+pub struct Division<'a> {
+    pub step: &'a Step,
+    pub options: NewtonOptions,
+}
+
+impl Division<'_> {
+    /// Where the next increment ends.
+    pub fn next_end(&self, at: &Progress) -> f64 {
+        match self.step.increments {
+            Increments::Fixed(n) => (at.count + 1) as f64 / n as f64,
+            Increments::Automatic { .. } => {
+                let limit = self.step.knots.iter().copied().find(|k| *k > at.done * (1.0 + 1e-12)).unwrap_or(1.0);
+                // No crumb before a knot or at the end of a step.
+                if at.done + 1.001 * at.length >= limit { limit } else { at.done + at.length }
+            }
+        }
+    }
+
+    /// After an increment to `to`.
+    pub fn advance(&self, at: &mut Progress, to: f64, iterations: usize) {
+        at.done = to;
+        at.count += 1;
+        if let Increments::Automatic { maximum, .. } = self.step.increments
+            && iterations <= self.options.easy_iterations
+        {
+            at.length = (at.length * self.options.growth).min(maximum);
+        }
+    }
+
+    /// After a failed attempt.
+    ///
+    /// # Errors
+    /// What ends the step.
+    pub fn cut(&self, at: &mut Progress, cause: FemError) -> Result<(), FemError> {
+        if !cause.is_recoverable() {
+            return Err(cause);
+        }
+        let (step, cause) = (self.step.name.clone(), Box::new(cause));
+        match self.step.increments {
+            Increments::Fixed(_) => Err(FemError::FixedIncrementFailed { step, increment: at.count + 1, cause }),
+            Increments::Automatic { minimum, .. } => {
+                at.length = (self.next_end(at) - at.done) * self.options.cutback;
+                if at.length < minimum {
+                    return Err(FemError::IncrementTooShort { step, fraction: at.done, minimum, cause });
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// # Errors
+    /// [`FemError::TooManyIncrements`].
+    pub fn check_count(&self, at: &Progress) -> Result<(), FemError> {
+        match self.step.increments {
+            Increments::Automatic { max_count, .. } if at.count >= max_count => {
+                let step = self.step.name.clone();
+                Err(FemError::TooManyIncrements { step, fraction: at.done, limit: max_count })
+            }
+            _ => Ok(()),
+        }
+    }
+}
