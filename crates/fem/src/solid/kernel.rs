@@ -64,7 +64,12 @@ pub struct Pack<'a, S: Simd, const N: usize> {
 impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
     /// Kinematics of at most as many points as there are lanes.
     #[inline(always)]
-    pub fn new(simd: S, points: &'a [PointGeometry<N>], u: &NodeVector<N>) -> Self {
+    pub fn new(simd: S, points: &'a [PointGeometry<N>], displacement: &NodeVector<N>) -> Self {
+        simd.vectorize(NewPack { simd, points, displacement })
+    }
+
+    #[inline(always)]
+    fn form(simd: S, points: &'a [PointGeometry<N>], u: &NodeVector<N>) -> Self {
         let (zero, last) = (Wide::new(simd, 0.0), points.len() - 1);
         let mut numbers = [[[0.0; MAX_LANES]; 3]; 3];
         let mut frames = numbers;
@@ -110,6 +115,11 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
     /// Adds `scale (FR V)_kj g_j(a)`: the nodal forces of a stress, or the nodal gradient of a strain measure, `V`.
     #[inline(always)]
     pub fn add_force(&self, v: &[Wide<S>; 6], scale: Wide<S>, out: &mut NodeVector<N>) {
+        self.simd.vectorize(AddForce { pack: self, v, scale, out });
+    }
+
+    #[inline(always)]
+    fn sum_force(&self, v: &[Wide<S>; 6], scale: Wide<S>, out: &mut NodeVector<N>) {
         let mut tensor = *v;
         for i in 0..6 {
             tensor[i] = v[i] * (scale * FACTOR[i]);
@@ -206,7 +216,42 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
     }
 }
 
-/// [`Pack::add_stiffness`] as a function of its own for every element and instruction set, whatever the law.
+// Functions of their own for every element and instruction set, whatever the law: much less to compile.
+
+/// [`Pack::new`].
+struct NewPack<'a, 'u, S: Simd, const N: usize> {
+    simd: S,
+    points: &'a [PointGeometry<N>],
+    displacement: &'u NodeVector<N>,
+}
+
+impl<'a, S: Simd, const N: usize> NullaryFnOnce for NewPack<'a, '_, S, N> {
+    type Output = Pack<'a, S, N>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        Pack::form(self.simd, self.points, self.displacement)
+    }
+}
+
+/// [`Pack::add_force`].
+struct AddForce<'a, S: Simd, const N: usize> {
+    pack: &'a Pack<'a, S, N>,
+    v: &'a [Wide<S>; 6],
+    scale: Wide<S>,
+    out: &'a mut NodeVector<N>,
+}
+
+impl<S: Simd, const N: usize> NullaryFnOnce for AddForce<'_, S, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.pack.sum_force(self.v, self.scale, self.out);
+    }
+}
+
+/// [`Pack::add_stiffness`].
 struct AddStiffness<'a, S: Simd, const N: usize, const SYMMETRIC: bool> {
     pack: &'a Pack<'a, S, N>,
     stress: &'a [Wide<S>; 6],

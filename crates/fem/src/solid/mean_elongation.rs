@@ -66,11 +66,15 @@ impl Formulation<8> for MeanElongation {
         product: &mut PointProducts<8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
-        match S::F64_LANES {
-            8 => evaluate::<L, S, 1, SYMMETRIC>(simd, input, new, product, out),
-            4 => evaluate::<L, S, 2, SYMMETRIC>(simd, input, new, product, out),
-            2 => evaluate::<L, S, 4, SYMMETRIC>(simd, input, new, product, out),
-            _ => evaluate::<L, S, 8, SYMMETRIC>(simd, input, new, product, out),
+        // Constants, so that only one of them is compiled.
+        if const { S::F64_LANES == 8 } {
+            evaluate::<L, S, 1, SYMMETRIC>(simd, input, new, product, out)
+        } else if const { S::F64_LANES == 4 } {
+            evaluate::<L, S, 2, SYMMETRIC>(simd, input, new, product, out)
+        } else if const { S::F64_LANES == 2 } {
+            evaluate::<L, S, 4, SYMMETRIC>(simd, input, new, product, out)
+        } else {
+            evaluate::<L, S, 8, SYMMETRIC>(simd, input, new, product, out)
         }
     }
 }
