@@ -437,13 +437,13 @@ fn add_rest<const N: usize>(
     }
 }
 
-/// Completes the entries with row node < column node of a symmetric matrix whose entries with row component > column
+/// Completes the entries with row node <= column node of a symmetric matrix whose entries with row component > column
 /// component have not been formed.
 #[inline(always)]
 pub fn mirror<const N: usize>(matrix: &mut NodeMatrix<N>) {
     for (k, m) in [(1, 0), (2, 0), (2, 1)] {
         for a in 0..N {
-            for b in a + 1..N {
+            for b in a..N {
                 matrix[k][a][m][b] = matrix[m][b][k][a];
             }
         }
