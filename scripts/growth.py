@@ -3,7 +3,8 @@
 
     python3 scripts/growth.py [--binary target/release/subrope] [--out out/growth] [--repeats 3] [FAMILY ...]
 
-Families: length (pitches), section (refinement of the section), strands (their number). Every member is a short pull of the
+Families: length (pitches), section (refinement of the section), strands (their number), cycles (of a helical slice). Every
+member but the cycles is a short pull of the
 rope of scenes/sub_rope_cycles.toml in two increments or so, on one thread. Members run interleaved, and the least time of the
 repeats counts: what is above it is the machine's. An exponent is that of the cost between neighbours in the table,
 d log cost / d log unknowns.
@@ -24,6 +25,9 @@ increments = { initial = 0.5 }
 elongation = 1e-5
 """
 PITCH, LAYERS = 60.0, 40
+
+SLICE = ROOT / "scenes" / "sub_rope_slice_cycles.toml"
+CYCLES = (10, 100, 1000)
 
 # What a member changes: keys of the scene.
 FAMILIES = {
@@ -47,11 +51,11 @@ def scene(changes):
     return text + PULL
 
 
-def run(args, family, name, changes):
+def run(args, family, name, text):
     """One run of a member; its summary, or why it failed."""
     folder = args.out / family / name.replace(" ", "_")
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scene.toml").write_text(scene(changes))
+    (folder / "scene.toml").write_text(text)
     command = [args.binary, "run", folder / "scene.toml", "--out", folder / "results", "--threads", "1"]
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     if done.returncode:
@@ -75,7 +79,7 @@ def family_table(args, family):
         for name, changes in members:
             if name in failed:
                 continue
-            summary, why = run(args, family, name, changes)
+            summary, why = run(args, family, name, scene(changes))
             if summary is None:
                 failed[name] = why
                 continue
@@ -109,15 +113,29 @@ def family_table(args, family):
               f"{overall['memory']:.2f} of the memory; least of {args.repeats} runs.")
 
 
+def cycles_table(args):
+    print("\n| cycles | increments | seconds | ms per cycle | memory MB |\n|---|---|---|---|---|")
+    for count in CYCLES:
+        text = re.sub(r"^count = \d+", f"count = {count}", SLICE.read_text(), flags=re.M)
+        text = re.sub(r"^every = \d+", f"every = {max(1, count // 10)}", text, flags=re.M)
+        summary, why = run(args, "cycles", str(count), text)
+        if summary is None:
+            print(f"| {count} | {why} | | | |")
+            continue
+        seconds = summary["seconds"]["total"]
+        print(f"| {count} | {summary['counts']['increments']} | {seconds:.1f} | {1e3 * seconds / count:.0f} "
+              f"| {summary['peak_memory_mb'] or 0.0:.0f} |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("families", nargs="*", choices=[*FAMILIES, []], default=list(FAMILIES))
+    parser.add_argument("families", nargs="*", choices=[*FAMILIES, "cycles", []], default=[*FAMILIES, "cycles"])
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/subrope")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/growth")
     parser.add_argument("--repeats", type=int, default=3)
     args = parser.parse_args()
     for family in args.families:
-        family_table(args, family)
+        cycles_table(args) if family == "cycles" else family_table(args, family)
 
 
 if __name__ == "__main__":

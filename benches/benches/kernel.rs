@@ -69,7 +69,7 @@ impl<L: Law> WithSimd for Points<'_, L> {
         let mut out = LaneResponse::zero(witness);
         let mut done = true;
         for points in self.inputs.chunks_exact(S::F64_LANES) {
-            let entry = |i, j| witness.from_fn(|lane| points[lane].displacement_gradient[(i, j)]);
+            let entry = |i, j| witness.fill(|lane| points[lane].displacement_gradient[(i, j)]);
             let input = LaneInput {
                 points: points.len(),
                 gradient: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),

@@ -9,7 +9,8 @@ use subrope_fem::solid::{
 use subrope_material::lanes::{Lanes, MAX_LANES};
 use subrope_material::{
     BundleLaw, BundleParameters, Compaction, CompressibleNeoHooke, FibreNeoHooke, Friction, Hardening, LaneFailure,
-    LaneInput, LaneResponse, Law, ModeParameters, PointInput, Request as LawRequest, Response, StVenantKirchhoff,
+    LaneInput, LaneResponse, Law, LawError, ModeParameters, PointInput, Request as LawRequest, Response,
+    StVenantKirchhoff,
 };
 
 /// Reproducible numbers between -1 and 1.
@@ -26,7 +27,7 @@ impl Numbers {
     }
 }
 
-fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> BundleLaw {
+fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> Result<BundleLaw, LawError> {
     let mode = |k, tau, hardening, x| ModeParameters::sliding(k, Friction { tau, hardening, x, mu });
     BundleLaw::new(BundleParameters {
         k_e: 2000.0,
@@ -38,19 +39,18 @@ fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> BundleL
         transverse: mode(15.0, 0.5, hardening[0], 2.0),
         longitudinal: mode(20.0, 1.0, hardening[1], 0.0),
     })
-    .unwrap()
 }
 
-fn bundles() -> Vec<BundleLaw> {
+fn bundles() -> Result<Vec<BundleLaw>, LawError> {
     let linear = [Hardening::Linear { h: 0.1 }, Hardening::Linear { h: 0.0 }];
     let saturating = Hardening::Saturating { h_inf: 0.4, kappa_s: 0.02 };
-    let elastic = BundleLaw::new(bundle(Compaction::Quadratic, linear, 0.0).parameters().without_friction()).unwrap();
-    vec![
-        elastic,
-        bundle(Compaction::Quadratic, linear, 0.0),
-        bundle(Compaction::Power { k_p: 300.0, m: 2.5 }, [saturating, linear[0]], 0.0),
-        bundle(Compaction::LockUp { z_lock: -0.2 }, [saturating; 2], 0.3),
-    ]
+    let sliding = bundle(Compaction::Quadratic, linear, 0.0)?;
+    Ok(vec![
+        BundleLaw::new(sliding.parameters().without_friction())?,
+        sliding,
+        bundle(Compaction::Power { k_p: 300.0, m: 2.5 }, [saturating, linear[0]], 0.0)?,
+        bundle(Compaction::LockUp { z_lock: -0.2 }, [saturating; 2], 0.3)?,
+    ])
 }
 
 /// All lanes at once and one by one.
@@ -68,8 +68,8 @@ impl<L: Law> WithSimd for Compare<'_, L> {
         let points = self.inputs.len().min(S::F64_LANES);
         let witness = Wide::new(simd, 0.0);
         let of = |lane: usize| &self.inputs[lane.min(points - 1)];
-        let entry = |i, j| witness.from_fn(|lane| of(lane).displacement_gradient[(i, j)]);
-        let elongation = witness.from_fn(|lane| of(lane).mean_elongation.unwrap_or(0.0));
+        let entry = |i, j| witness.fill(|lane| of(lane).displacement_gradient[(i, j)]);
+        let elongation = witness.fill(|lane| of(lane).mean_elongation.unwrap_or(0.0));
         let input = LaneInput {
             points,
             gradient: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
@@ -138,7 +138,7 @@ fn compare_laws<L: Law>(law: &L, averaged: bool) {
 
 #[test]
 fn lanes_answer_as_points_do() {
-    for law in bundles() {
+    for law in bundles().unwrap() {
         compare_laws(&law, false);
         compare_laws(&law, true);
     }
@@ -149,7 +149,7 @@ fn lanes_answer_as_points_do() {
 
 #[test]
 fn a_number_that_is_missing_names_its_lane() {
-    let law = &bundles()[1];
+    let law = &bundles().unwrap()[1];
     let mut numbers = Numbers(3);
     for bad in [f64::NAN, f64::INFINITY] {
         for lane in 0..MAX_LANES {
@@ -195,9 +195,9 @@ fn points(numbers: &mut Numbers) -> Vec<PointGeometry<8>> {
     (0..8).map(|_| point()).collect()
 }
 
-fn compare_elements<F: Formulation<8>>() {
+fn compare_elements<F: Formulation<8>>(laws: &[BundleLaw]) {
     let mut numbers = Numbers(11);
-    for law in &bundles()[..3] {
+    for law in laws {
         for _ in 0..20 {
             let points = points(&mut numbers);
             let old = vec![0.0; 8 * law.state_len()];
@@ -232,7 +232,9 @@ fn near(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn instruction_sets_agree() {
-    compare_elements::<Full>();
-    compare_elements::<MeanElongation>();
-    compare_elements::<MeanVolume>();
+    // All but the one that locks up.
+    let laws = &bundles().unwrap()[..3];
+    compare_elements::<Full>(laws);
+    compare_elements::<MeanElongation>(laws);
+    compare_elements::<MeanVolume>(laws);
 }

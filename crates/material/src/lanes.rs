@@ -62,7 +62,7 @@ pub trait Lanes:
     /// The same number in all lanes.
     fn splat(self, value: f64) -> Self;
     /// Lane by lane; what is behind the last lane is left out.
-    fn from_array(self, numbers: &[f64; MAX_LANES]) -> Self;
+    fn load(self, numbers: &[f64; MAX_LANES]) -> Self;
     /// The lanes, zeros behind the last.
     fn to_array(self) -> [f64; MAX_LANES];
     /// `self * factor + addend`, with one rounding where that is fast.
@@ -84,12 +84,12 @@ pub trait Lanes:
 
     /// Lane by lane.
     #[inline(always)]
-    fn from_fn(self, mut value: impl FnMut(usize) -> f64) -> Self {
+    fn fill(self, mut value: impl FnMut(usize) -> f64) -> Self {
         let mut numbers = [0.0; MAX_LANES];
-        for lane in 0..Self::COUNT {
-            numbers[lane] = value(lane);
+        for (lane, number) in numbers.iter_mut().enumerate().take(Self::COUNT) {
+            *number = value(lane);
         }
-        self.from_array(&numbers)
+        self.load(&numbers)
     }
 
     /// Whether the mask holds in all lanes.
@@ -108,7 +108,7 @@ pub trait Lanes:
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
         let numbers = self.to_array();
-        self.from_fn(|i| function(numbers[i]))
+        self.fill(|i| function(numbers[i]))
     }
 
     /// [`Lanes::select`] of several numbers.
@@ -205,7 +205,7 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
-    fn from_array(self, numbers: &[f64; MAX_LANES]) -> Self {
+    fn load(self, numbers: &[f64; MAX_LANES]) -> Self {
         numbers[0]
     }
 

@@ -173,7 +173,7 @@ impl<V: Lanes> LaneResponse<V> {
     /// From the responses of single points, the last repeated.
     fn gather(witness: V, of: &[Response], out: &mut Self) {
         let last = of.len() - 1;
-        let lanes = |number: &dyn Fn(&Response) -> f64| witness.from_fn(|lane| number(&of[lane.min(last)]));
+        let lanes = |number: &dyn Fn(&Response) -> f64| witness.fill(|lane| number(&of[lane.min(last)]));
         out.second_piola = std::array::from_fn(|i| lanes(&|r| r.second_piola[i]));
         out.tangent = std::array::from_fn(|j| std::array::from_fn(|i| lanes(&|r| r.tangent[(i, j)])));
         out.fibre = LaneFibreResponse {

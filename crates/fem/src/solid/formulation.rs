@@ -117,22 +117,21 @@ impl<const N: usize, L: Law> ElementInput<'_, N, L> {
         kernel::mixed_gradient(&self.displacement, &self.points[point].gradient)
     }
 
-    /// Calls the law at the pack whose first point has a number, with displacement gradients in the fibre frame.
+    /// Calls the law at a pack.
     #[inline(always)]
     pub(super) fn call<S: Simd>(
         &self,
         simd: S,
-        (first, points): (usize, usize),
-        gradient: &[[Wide<S>; 3]; 3],
-        mean_elongation: Option<Wide<S>>,
+        strain: &PackStrain<S>,
         new: &mut [f64],
         response: &mut LaneResponse<Wide<S>>,
     ) -> Result<(), ElementFailure> {
+        let &PackStrain { first, points, gradient, mean_elongation } = strain;
         let n = self.law.state_len();
         let states = first * n..(first + points) * n;
         let input = LaneInput {
             points,
-            gradient: *gradient,
+            gradient,
             mean_elongation,
             time_increment: self.time_increment,
             temperature: self.temperature,
@@ -145,6 +144,17 @@ impl<const N: usize, L: Law> ElementInput<'_, N, L> {
         let call = LawCall { law: self.law, input: &input, old, new, request, response };
         simd.vectorize(call).map_err(|LaneFailure { lane, source }| ElementFailure::Law(first + lane, source))
     }
+}
+
+/// What a law is asked at a pack.
+pub(super) struct PackStrain<S: Simd> {
+    /// Number of the first point.
+    pub(super) first: usize,
+    /// How many points.
+    pub(super) points: usize,
+    /// Displacement gradient in the fibre frame.
+    pub(super) gradient: [[Wide<S>; 3]; 3],
+    pub(super) mean_elongation: Option<Wide<S>>,
 }
 
 /// A law at a pack: a function of its own for every law and instruction set, whatever the element.
@@ -184,7 +194,8 @@ impl<const N: usize> Formulation<N> for Full {
         let mut response = LaneResponse::zero(Wide::new(simd, 0.0));
         for (number, points) in input.points.chunks(S::F64_LANES).enumerate() {
             let (first, pack) = (number * S::F64_LANES, Pack::new(simd, points, &input.displacement));
-            input.call(simd, (first, pack.points.len()), &pack.gradient, None, new, &mut response)?;
+            let strain = PackStrain { first, points: points.len(), gradient: pack.gradient, mean_elongation: None };
+            input.call(simd, &strain, new, &mut response)?;
             out.keep_stress(first, &response.second_piola);
             pack.add_force(&response.second_piola, pack.volume, &mut out.force);
             if input.request == Request::Tangent {

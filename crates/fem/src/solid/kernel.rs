@@ -9,6 +9,8 @@
 //! Points go together in *packs*, one point in each lane of a vector, up to `A`; sums over nodes have a node in each
 //! lane, and the stiffness of a pack is summed in registers, four nodes by two vectors at a time.
 
+#![allow(clippy::needless_range_loop, reason = "tensors are written by their indices, as in the formulas")]
+
 use nalgebra::Matrix3;
 use pulp::{NullaryFnOnce, Simd};
 use subrope_material::lanes::{Lanes, MAX_LANES};
@@ -84,14 +86,13 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
             }
             volumes[lane] = point.volume;
         }
-        let mut pack =
-            Self { simd, points, fr: [[zero; 3]; 3], gradient: [[zero; 3]; 3], volume: zero.from_array(&volumes) };
+        let mut pack = Self { simd, points, fr: [[zero; 3]; 3], gradient: [[zero; 3]; 3], volume: zero.load(&volumes) };
         let mut hr = [[zero; 3]; 3];
         let mut frame = hr;
         for k in 0..3 {
             for j in 0..3 {
-                hr[k][j] = zero.from_array(&numbers[k][j]);
-                frame[k][j] = zero.from_array(&frames[k][j]);
+                hr[k][j] = zero.load(&numbers[k][j]);
+                frame[k][j] = zero.load(&frames[k][j]);
                 pack.fr[k][j] = frame[k][j] + hr[k][j];
             }
         }

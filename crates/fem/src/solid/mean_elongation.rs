@@ -4,7 +4,7 @@ use pulp::Simd;
 use subrope_material::lanes::Lanes;
 use subrope_material::{LaneResponse, Law, LawError};
 
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
 use super::kernel::{self, NodeVector, Pack, PointProducts, Stiffness};
 use super::wide::Wide;
 use crate::contribution::Request;
@@ -107,8 +107,13 @@ fn evaluate<L: Law, S: Simd, const PACKS: usize, const SYMMETRIC: bool>(
     mean /= volume;
     let mut fibre_stress = 0.0;
     for (number, Half { pack, response, .. }) in halves.iter_mut().enumerate() {
-        let mean = Some(zero.splat(mean));
-        input.call(simd, (number * lanes, lanes), &pack.gradient, mean, new, response)?;
+        let (first, mean_elongation) = (number * lanes, Some(zero.splat(mean)));
+        input.call(
+            simd,
+            &PackStrain { first, points: lanes, gradient: pack.gradient, mean_elongation },
+            new,
+            response,
+        )?;
         pack.integrate(response.fibre.fibre_stress, &mut fibre_stress);
         out.add_energies(pack, response);
     }

@@ -1,11 +1,13 @@
 //! The brick that averages the volume ratio.
 
+#![allow(clippy::needless_range_loop, reason = "tensors are written by their indices, as in the formulas")]
+
 use pulp::Simd;
 use subrope_material::lanes::{Lanes, volume_growth};
 use subrope_material::mandel::{PAIRS, WEIGHTS};
 use subrope_material::{LaneResponse, Law, LawError};
 
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
 use super::kernel::{MANDEL, Pack, PointProducts, Stiffness};
 use super::mean_elongation::MeanTerms;
 use super::wide::Wide;
@@ -139,7 +141,8 @@ impl<S: Simd> Half<'_, S> {
             }
             row[i] += grow;
         }
-        input.call(simd, (first, self.pack.points.len()), &gradient, None, new, &mut self.response)?;
+        let strain = PackStrain { first, points: self.pack.points.len(), gradient, mean_elongation: None };
+        input.call(simd, &strain, new, &mut self.response)?;
         let factor = psi.map(f64::exp);
         for stress in &mut self.response.second_piola {
             *stress = *stress * factor;

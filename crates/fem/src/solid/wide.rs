@@ -64,7 +64,7 @@ impl<S: Simd> Lanes for Wide<S> {
     }
 
     #[inline(always)]
-    fn from_array(self, numbers: &[f64; MAX_LANES]) -> Self {
+    fn load(self, numbers: &[f64; MAX_LANES]) -> Self {
         self.with(S::as_simd_f64s(&numbers[..S::F64_LANES]).0[0])
     }
 

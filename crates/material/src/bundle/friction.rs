@@ -205,7 +205,7 @@ fn saturating_roots<V: Lanes>(excess: V, stiffness: f64, reserve: V, scale: f64)
             *step = saturating_root(excesses[i], stiffness, reserves[i], scale);
         }
     }
-    (excess.from_fn(|i| steps[i].0), excess.from_fn(|i| steps[i].1))
+    (excess.fill(|i| steps[i].0), excess.fill(|i| steps[i].1))
 }
 
 /// Root `d` of `excess - stiffness d - reserve (1 - exp(-d/scale))`, with `exp(-d/scale) - 1`.

@@ -54,7 +54,7 @@ impl<V: Lanes> BundleState<V> {
         let n = len(slides, presses);
         let mut numbers = [witness.splat(0.0); 9];
         for (at, number) in numbers.iter_mut().enumerate().take(n) {
-            *number = witness.from_fn(|lane| old[lane.min(count - 1) * n + at]);
+            *number = witness.fill(|lane| old[lane.min(count - 1) * n + at]);
         }
         let [d1, d2, g2, g3, kappa_t, kappa_l, d_t, d_l, pressure] = numbers;
         Self {

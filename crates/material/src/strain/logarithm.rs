@@ -46,7 +46,7 @@ impl<V: Lanes> LogarithmFactors<V> {
             }
         });
         let factors: [LogarithmFactors; crate::lanes::MAX_LANES] = factors;
-        let gather = |part: fn(&LogarithmFactors) -> f64| y.from_fn(|i| part(&factors[i]));
+        let gather = |part: fn(&LogarithmFactors) -> f64| y.fill(|i| part(&factors[i]));
         Self { h: gather(|f| f.h), k: gather(|f| f.k), l: gather(|f| f.l) }
     }
 }
