@@ -5,7 +5,8 @@ use pulp::{NullaryFnOnce, Simd};
 use subrope_material::lanes::Lanes;
 use subrope_material::{LaneFailure, LaneInput, LaneResponse, Law, LawError, Request as LawRequest};
 
-use super::kernel::{self, NodeMatrix, NodeVector, Pack, PointGeometry, PointProducts, Stiffness};
+use super::kernel::{NodeMatrix, NodeVector, PointGeometry, PointProducts, Stiffness};
+use super::pack::{self, Pack};
 use super::wide::Wide;
 use crate::contribution::{Energies, Request};
 
@@ -97,7 +98,7 @@ pub trait Formulation<const N: usize>: Send + Sync + 'static {
 
     /// Evaluates one element into `out` (forces and energies zeroed by the caller) and the new state, with
     /// a buffer. `SYMMETRIC` leaves entries whose row
-    /// component is behind their column component to [`kernel::mirror`].
+    /// component is behind their column component to `kernel::mirror`.
     ///
     /// # Errors
     /// [`ElementFailure`].
@@ -114,7 +115,7 @@ impl<const N: usize, L: Law> ElementInput<'_, N, L> {
     /// `HR` of a point.
     #[inline(always)]
     pub fn gradient(&self, point: usize) -> Matrix3<f64> {
-        kernel::mixed_gradient(&self.displacement, &self.points[point].gradient)
+        pack::mixed_gradient(&self.displacement, &self.points[point].gradient)
     }
 
     /// Calls the law at a pack.

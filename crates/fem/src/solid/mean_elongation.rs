@@ -5,7 +5,8 @@ use subrope_material::lanes::Lanes;
 use subrope_material::{LaneResponse, Law, LawError};
 
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
-use super::kernel::{self, NodeVector, Pack, PointProducts, Stiffness};
+use super::kernel::{self, NodeVector, PointProducts, Stiffness};
+use super::pack::Pack;
 use super::wide::Wide;
 use crate::contribution::Request;
 

@@ -8,8 +8,9 @@ use subrope_material::mandel::{PAIRS, WEIGHTS};
 use subrope_material::{LaneResponse, Law, LawError};
 
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
-use super::kernel::{MANDEL, Pack, PointProducts, Stiffness};
+use super::kernel::{PointProducts, Stiffness};
 use super::mean_elongation::MeanTerms;
+use super::pack::{MANDEL, Pack};
 use super::wide::Wide;
 use crate::contribution::Request;
 

@@ -6,6 +6,7 @@ mod kernel;
 mod mean_elongation;
 mod mean_volume;
 mod output;
+mod pack;
 mod wide;
 
 pub use block::{SolidBlock, SolidMesh};
