@@ -27,7 +27,7 @@ try:
 except ImportError as error:
     sys.exit(f"VTK is not installed ({error}): pip install vtk")
 
-HEXAHEDRA = {12, 29}
+HEXAHEDRA = {12, 25, 29}
 LOCATIONS = (("point", lambda grid: grid.GetPointData()), ("cell", lambda grid: grid.GetCellData()))
 
 
