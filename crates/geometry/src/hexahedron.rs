@@ -7,7 +7,7 @@ mod map;
 mod quadrature;
 
 pub use hex8::Hex8;
-pub use hex20::{Hex20, Hex20R};
+pub use hex20::{Hex20, Hex20R, Serendipity};
 pub use hex27::Hex27;
 pub use map::{MappedPoint, jacobian, map_point, position};
 pub use quadrature::QuadraturePoint;

@@ -190,18 +190,20 @@ impl<V: Lanes> LaneResponse<V> {
 }
 
 impl LaneResponse<f64> {
-    /// As the response of a point; its tangent stays as it is when none was asked for.
-    pub(crate) fn write_to(&self, out: &mut Response, request: Request) {
+    /// As the response of a point; what was not asked for stays as it is.
+    pub(crate) fn write_to(&self, out: &mut Response, input: &PointInput, request: Request) {
         out.second_piola = self.second_piola.into();
         if request == Request::Tangent {
             out.tangent.as_mut_slice().copy_from_slice(self.tangent.as_flattened());
         }
-        out.fibre = FibreResponse {
-            fibre_stress: self.fibre.fibre_stress,
-            fibre_stiffness: self.fibre.fibre_stiffness,
-            stress_by_elongation: self.fibre.stress_by_elongation.into(),
-            fibre_stress_by_strain: self.fibre.fibre_stress_by_strain.into(),
-        };
+        if input.mean_elongation.is_some() {
+            out.fibre = FibreResponse {
+                fibre_stress: self.fibre.fibre_stress,
+                fibre_stiffness: self.fibre.fibre_stiffness,
+                stress_by_elongation: self.fibre.stress_by_elongation.into(),
+                fibre_stress_by_strain: self.fibre.fibre_stress_by_strain.into(),
+            };
+        }
         out.stored_energy = self.stored_energy;
         out.incremental_potential = self.incremental_potential;
         out.dissipated_mid = self.dissipated_mid;

@@ -7,6 +7,9 @@ use std::f64::consts::SQRT_2;
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
+use crate::lanes;
+use crate::strain::rows;
+
 /// Row and column of each entry.
 pub const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
@@ -35,8 +38,7 @@ pub fn to_matrix(v: &Vector6<f64>) -> Matrix3<f64> {
 #[must_use]
 #[inline]
 pub fn green_lagrange(displacement_gradient: &Matrix3<f64>) -> Vector6<f64> {
-    let h = displacement_gradient;
-    from_matrix(&(h + 0.5 * h.tr_mul(h)))
+    lanes::green_lagrange(&rows(displacement_gradient)).into()
 }
 
 /// `R a R^T`: from the components in a frame with the columns of `R` to the components in the frame of `R`'s rows.

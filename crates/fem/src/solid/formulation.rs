@@ -118,6 +118,12 @@ impl<const N: usize, L: Law> ElementInput<'_, N, L> {
         pack::mixed_gradient(&self.displacement, &self.points[point].gradient)
     }
 
+    /// Reference volume \[mm^3\].
+    #[inline(always)]
+    pub(super) fn volume(&self) -> f64 {
+        self.points.iter().map(|point| point.volume).sum()
+    }
+
     /// Calls the law at a pack.
     #[inline(always)]
     pub(super) fn call<S: Simd>(

@@ -7,9 +7,9 @@ use subrope_material::lanes::{Lanes, volume_growth};
 use subrope_material::mandel::{PAIRS, WEIGHTS};
 use subrope_material::{LaneResponse, Law, LawError};
 
+use super::averaged::{self, Averaging, MeanTerms};
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
 use super::kernel::{PointProducts, Stiffness};
-use super::mean_elongation::MeanTerms;
 use super::pack::{MANDEL, Pack};
 use super::wide::Wide;
 use crate::contribution::Request;
@@ -25,8 +25,7 @@ pub struct MeanVolume;
 
 /// A pack between the two passes over the element.
 #[derive(Clone, Copy)]
-struct Half<'a, S: Simd> {
-    pack: Pack<'a, S, 8>,
+struct Half<S: Simd> {
     /// `J - 1`.
     dilation: Wide<S>,
     /// `C`, Mandel.
@@ -47,138 +46,137 @@ impl Formulation<8> for MeanVolume {
         product: &mut PointProducts<8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
-        // Constants, so that only one of them is compiled.
-        if const { S::F64_LANES == 8 } {
-            evaluate::<L, S, 1, SYMMETRIC>(simd, input, new, product, out)
-        } else if const { S::F64_LANES == 4 } {
-            evaluate::<L, S, 2, SYMMETRIC>(simd, input, new, product, out)
-        } else if const { S::F64_LANES == 2 } {
-            evaluate::<L, S, 4, SYMMETRIC>(simd, input, new, product, out)
-        } else {
-            evaluate::<L, S, 8, SYMMETRIC>(simd, input, new, product, out)
-        }
+        averaged::average::<Self, L, S, SYMMETRIC>(simd, input, new, product, out)
     }
 }
 
-/// With the eight points in `PACKS` packs.
-#[inline(always)]
-fn evaluate<L: Law, S: Simd, const PACKS: usize, const SYMMETRIC: bool>(
-    simd: S,
-    input: &ElementInput<'_, 8, L>,
-    new: &mut [f64],
-    product: &mut PointProducts<8>,
-    out: &mut ElementResult<8>,
-) -> Result<(), ElementFailure> {
-    let (zero, lanes) = (Wide::new(simd, 0.0), S::F64_LANES);
-    let (mut mean, mut volume) = (0.0, 0.0);
-    let pack = Pack::new(simd, &input.points[..lanes], &input.displacement);
-    let response = LaneResponse::zero(zero);
-    let mut halves = [Half { pack, dilation: zero, right: [zero; 6], pressure: zero, response }; PACKS];
-    for (number, Half { pack, dilation, right, .. }) in halves.iter_mut().enumerate() {
-        if number > 0 {
-            *pack = Pack::new(simd, &input.points[number * lanes..(number + 1) * lanes], &input.displacement);
+impl Averaging for MeanVolume {
+    #[inline(always)]
+    fn passes<L: Law, S: Simd, const PACKS: usize, const SYMMETRIC: bool>(
+        simd: S,
+        input: &ElementInput<'_, 8, L>,
+        new: &mut [f64],
+        product: &mut PointProducts<8>,
+        out: &mut ElementResult<8>,
+    ) -> Result<(), ElementFailure> {
+        let (zero, lanes) = (Wide::new(simd, 0.0), S::F64_LANES);
+        let (mut mean, volume) = (0.0, input.volume());
+        let packs = averaged::packs::<L, S, PACKS>(simd, input);
+        let half = Half { dilation: zero, right: [zero; 6], pressure: zero, response: LaneResponse::zero(zero) };
+        let mut halves = [half; PACKS];
+        for (number, (pack, half)) in packs.iter().zip(&mut halves).enumerate() {
+            half.dilation = volume_growth(&pack.gradient);
+            half.right = right_cauchy_green(&pack.gradient);
+            if let Some((lane, jacobian)) = (half.dilation + 1.0).first_not_positive() {
+                return Err(ElementFailure::Law(number * lanes + lane, LawError::Inverted { jacobian }));
+            }
+            pack.integrate(half.dilation, &mut mean);
         }
-        *dilation = volume_growth(&pack.gradient);
-        *right = right_cauchy_green(&pack.gradient);
-        if let Some((lane, jacobian)) = (*dilation + 1.0).first_not_positive() {
-            return Err(ElementFailure::Law(number * lanes + lane, LawError::Inverted { jacobian }));
+        mean /= volume;
+        if mean.is_nan() || mean <= -1.0 {
+            return Err(ElementFailure::MeanVolume(1.0 + mean));
         }
-        pack.integrate(*dilation, &mut mean);
-        pack.integrate(zero + 1.0, &mut volume);
-    }
-    mean /= volume;
-    if mean.is_nan() || mean <= -1.0 {
-        return Err(ElementFailure::MeanVolume(1.0 + mean));
-    }
-    let mut total = 0.0;
-    for (number, half) in halves.iter_mut().enumerate() {
-        half.evaluate_law(simd, input, number * lanes, mean, new)?;
-        half.pack.integrate(half.pressure, &mut total);
-        out.add_energies(&half.pack, &half.response);
-    }
-    let mut terms = MeanTerms::ZERO;
-    // Second variation of ln J_bar: the part that the mean itself carries.
-    terms.stiffness = -2.0 / 3.0 * total;
-    for (number, half) in halves.iter().enumerate() {
-        let pack = &half.pack;
-        let weight = (half.dilation + 1.0) * (1.0 / (1.0 + mean) / volume);
-        let split = VolumeSplit::new(half, weight * total);
-        out.keep_stress(number * lanes, &split.stress);
-        pack.add_force(&split.stress, pack.volume, &mut out.force);
+        let mut total = 0.0;
+        for (number, (pack, half)) in packs.iter().zip(&mut halves).enumerate() {
+            half.evaluate_law(input, (number * lanes, pack), mean, new)?;
+            pack.integrate(half.pressure, &mut total);
+            out.add_energies(pack, &half.response);
+        }
+        let mut terms = MeanTerms::ZERO;
+        // Second variation of ln J_bar: the part that the mean itself carries.
+        terms.stiffness = -2.0 / 3.0 * total;
+        for (number, (pack, half)) in packs.iter().zip(&halves).enumerate() {
+            let weight = (half.dilation + 1.0) * (1.0 / (1.0 + mean) / volume);
+            let inverse = inverse_of(&pack.gradient, half.dilation + 1.0);
+            let share = weight * total;
+            let stress = half.effective_stress(&inverse, share);
+            out.keep_stress(number * lanes, &stress);
+            pack.add_force(&stress, pack.volume, &mut out.force);
+            if input.request == Request::Tangent {
+                let split = VolumeSplit::new(half, &inverse, share);
+                let tangent = split.tangent();
+                let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
+                pack.add_stiffness::<SYMMETRIC>(&stress, &tangent, number == 0, stiffness);
+                let [row, column] = split.couplings();
+                pack.add_force(&inverse, pack.volume * weight, &mut terms.gradient);
+                pack.add_force(&row, pack.volume, &mut terms.stress_coupling);
+                pack.add_force(&column, pack.volume, &mut terms.strain_coupling);
+                pack.integrate(split.stiffness, &mut terms.stiffness);
+            }
+        }
         if input.request == Request::Tangent {
-            let tangent = split.tangent(half);
-            let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
-            pack.add_stiffness::<SYMMETRIC>(&split.stress, &tangent, number == 0, stiffness);
-            let [row, column] = split.couplings(half);
-            pack.add_force(&split.inverse, pack.volume * weight, &mut terms.gradient);
-            pack.add_force(&row, pack.volume, &mut terms.stress_coupling);
-            pack.add_force(&column, pack.volume, &mut terms.strain_coupling);
-            pack.integrate(split.stiffness(half), &mut terms.stiffness);
+            terms.add_to::<S, SYMMETRIC>(simd, out);
         }
+        Ok(())
     }
-    if input.request == Request::Tangent {
-        terms.add_to::<S, SYMMETRIC>(simd, out);
-    }
-    Ok(())
 }
 
-impl<S: Simd> Half<'_, S> {
-    /// `S*`, `e^2psi` times the law's tangent at `C_bar`, and `s`.
+impl<S: Simd> Half<S> {
+    /// `S*`, `s`, and `e^2psi` times the law's tangent at `C_bar` when one is wanted.
     #[inline(always)]
     fn evaluate_law<L: Law>(
         &mut self,
-        simd: S,
         input: &ElementInput<'_, 8, L>,
-        first: usize,
+        (first, pack): (usize, &Pack<'_, S, 8>),
         mean: f64,
         new: &mut [f64],
     ) -> Result<(), ElementFailure> {
         let psi = (-self.dilation.ln_1p() + mean.ln_1p()) * (2.0 / 3.0);
         let grow = (psi * 0.5).map(f64::exp_m1);
-        let mut gradient = self.pack.gradient;
+        let mut gradient = pack.gradient;
         for (i, row) in gradient.iter_mut().enumerate() {
             for h in row.iter_mut() {
                 *h = h.mul_add(grow, *h);
             }
             row[i] += grow;
         }
-        let strain = PackStrain { first, points: self.pack.points.len(), gradient, mean_elongation: None };
-        input.call(simd, &strain, new, &mut self.response)?;
+        let strain = PackStrain { first, points: pack.points.len(), gradient, mean_elongation: None };
+        input.call(pack.simd, &strain, new, &mut self.response)?;
         let factor = psi.map(f64::exp);
         for stress in &mut self.response.second_piola {
             *stress = *stress * factor;
         }
         self.pressure = dot6(&self.response.second_piola, &self.right) * 0.5;
-        for modulus in self.response.tangent.as_flattened_mut() {
-            *modulus = *modulus * factor * factor;
+        if input.request == Request::Tangent {
+            for modulus in self.response.tangent.as_flattened_mut() {
+                *modulus = *modulus * factor * factor;
+            }
         }
         Ok(())
     }
+
+    /// `S* + 2/3 (share - s) G`, `G = C^-1`; `share` is `sum(w s) J/(J_bar V)`: `2/3 share G` is the stress that the mean
+    /// returns to the point.
+    #[inline(always)]
+    fn effective_stress(&self, inverse: &[Wide<S>; 6], share: Wide<S>) -> [Wide<S>; 6] {
+        let back = (share - self.pressure) * (2.0 / 3.0);
+        let mut stress = self.response.second_piola;
+        for i in 0..6 {
+            stress[i] = inverse[i].mul_add(back, stress[i]);
+        }
+        stress
+    }
 }
 
-/// Effective stress of a pack and what its tangent is made of.
-struct VolumeSplit<S: Simd> {
-    stress: [Wide<S>; 6],
+/// What the tangent of a pack is made of.
+struct VolumeSplit<'a, S: Simd> {
+    half: &'a Half<S>,
     /// `G = C^-1`, gradient of `ln J` by `E`.
-    inverse: [Wide<S>; 6],
-    /// `D C`, `C D`, `C D C` of the law's tangent.
+    inverse: &'a [Wide<S>; 6],
+    /// `D C` and `C D` of the law's tangent.
     dc: [Wide<S>; 6],
     cd: [Wide<S>; 6],
-    cdc: Wide<S>,
-    /// `sum(w s) J/(J_bar V)`: `2/3 share G` is the stress that the mean returns to the point.
+    /// `d2W/d(ln J_bar)2 = (C D C + 4 s)/9`.
+    stiffness: Wide<S>,
     share: Wide<S>,
 }
 
-impl<S: Simd> VolumeSplit<S> {
+impl<'a, S: Simd> VolumeSplit<'a, S> {
     #[inline(always)]
-    fn new(half: &Half<'_, S>, share: Wide<S>) -> Self {
-        let (response, right) = (&half.response, &half.right);
-        let inverse = inverse_of(&half.pack.gradient, half.dilation + 1.0);
-        let back = (share - half.pressure) * (2.0 / 3.0);
-        let columns = &response.tangent;
-        let (mut dc, mut cd, mut stress) = (*right, *right, response.second_piola);
+    fn new(half: &'a Half<S>, inverse: &'a [Wide<S>; 6], share: Wide<S>) -> Self {
+        let (right, columns) = (&half.right, &half.response.tangent);
+        let (mut dc, mut cd) = (*right, *right);
         for i in 0..6 {
-            stress[i] = inverse[i].mul_add(back, stress[i]);
             cd[i] = dot6(&columns[i], right);
             let mut row = *right;
             for j in 0..6 {
@@ -186,16 +184,17 @@ impl<S: Simd> VolumeSplit<S> {
             }
             dc[i] = dot6(&row, right);
         }
-        Self { stress, inverse, cdc: dot6(&dc, right), dc, cd, share }
+        let stiffness = dot6(&dc, right) * (1.0 / 9.0) + half.pressure * (4.0 / 9.0);
+        Self { half, inverse, dc, cd, stiffness, share }
     }
 
     /// Columns of the effective tangent: `P = 1 - C G/3` takes `dE` to the isochoric part that the law sees.
     #[inline(always)]
-    fn tangent(&self, half: &Half<'_, S>) -> [[Wide<S>; 6]; 6] {
-        let (g, s, law) = (&self.inverse, &half.response.second_piola, &half.response.tangent);
-        let both = self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0) + self.share * (2.0 / 3.0);
+    fn tangent(&self) -> [[Wide<S>; 6]; 6] {
+        let (g, s, law) = (self.inverse, &self.half.response.second_piola, &self.half.response.tangent);
+        let both = self.stiffness + self.share * (2.0 / 3.0);
         // Second variation of ln J: -G sym-odot G.
-        let turning = (self.share - half.pressure) * (4.0 / 3.0);
+        let turning = (self.share - self.half.pressure) * (4.0 / 3.0);
         let mut out = *law;
         for j in 0..6 {
             for i in 0..6 {
@@ -208,22 +207,15 @@ impl<S: Simd> VolumeSplit<S> {
 
     /// `d2W/dE d(ln J_bar)`, row and column version.
     #[inline(always)]
-    fn couplings(&self, half: &Half<'_, S>) -> [[Wide<S>; 6]; 2] {
-        let along = self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0);
+    fn couplings(&self) -> [[Wide<S>; 6]; 2] {
         let mut out = [self.dc, self.cd];
         for coupling in &mut out {
             for i in 0..6 {
-                let own = half.response.second_piola[i] * (2.0 / 3.0) - self.inverse[i] * along;
+                let own = self.half.response.second_piola[i] * (2.0 / 3.0) - self.inverse[i] * self.stiffness;
                 coupling[i] = coupling[i] * (1.0 / 3.0) + own;
             }
         }
         out
-    }
-
-    /// `d2W/d(ln J_bar)2`.
-    #[inline(always)]
-    fn stiffness(&self, half: &Half<'_, S>) -> Wide<S> {
-        self.cdc * (1.0 / 9.0) + half.pressure * (4.0 / 9.0)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Solid bricks: kernel, formulations and the block of equal elements.
 
+mod averaged;
 mod block;
 mod formulation;
 mod kernel;

@@ -33,7 +33,8 @@ pub fn mixed_gradient<const N: usize>(u: &NodeVector<N>, g: &NodeVector<N>) -> M
 /// A pack of integration points: one in each lane, the last repeated in lanes that are left over.
 #[derive(Clone, Copy, Debug)]
 pub struct Pack<'a, S: Simd, const N: usize> {
-    simd: S,
+    /// The instruction set.
+    pub simd: S,
     /// The points.
     pub points: &'a [PointGeometry<N>],
     /// `FR = R + HR`.

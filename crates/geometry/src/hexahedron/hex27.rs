@@ -83,10 +83,11 @@ impl Hexahedron<27> for Hex27 {
     }
 }
 
-const fn nodes() -> [[f64; 3]; 27] {
-    let mut out = [[0.0; 3]; 27];
+/// Natural coordinates of the first `N` nodes.
+pub(super) const fn nodes<const N: usize>() -> [[f64; 3]; N] {
+    let mut out = [[0.0; 3]; N];
     let mut a = 0;
-    while a < 27 {
+    while a < N {
         let [i, j, k] = LATTICE[a];
         out[a] = [i as f64 - 1.0, j as f64 - 1.0, k as f64 - 1.0];
         a += 1;

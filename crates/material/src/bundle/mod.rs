@@ -195,7 +195,7 @@ impl Law for BundleLaw {
         if !self.answer(&LaneInput::of(input), old, new, request, &mut lane) {
             return Err(self.diagnose(input, old));
         }
-        lane.write_to(out, request);
+        lane.write_to(out, input, request);
         Ok(())
     }
 

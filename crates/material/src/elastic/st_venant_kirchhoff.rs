@@ -3,11 +3,10 @@
 use nalgebra::{Matrix3, Matrix6};
 
 use super::measures::volume_growth;
-use super::{finish, positive, refuse_mean_elongation, require};
+use super::{positive, refuse_mean_elongation, require};
 use crate::LawError;
 use crate::lanes::{self, Lanes, finite};
 use crate::law::{LaneFailure, LaneInput, LaneResponse, Law, PointInput, Request, Response, StateVariable, each_lane};
-use crate::mandel::green_lagrange;
 
 /// Engineering constants of an orthotropic material, moduli \[MPa\], Poisson ratios \[-\]; 1 is the fibre.
 ///
@@ -106,6 +105,30 @@ impl StVenantKirchhoff {
     }
 }
 
+impl StVenantKirchhoff {
+    /// The whole answer; says in which lanes it is one.
+    #[inline(always)]
+    fn answer<V: Lanes>(&self, input: &LaneInput<V>, request: Request, out: &mut LaneResponse<V>) -> V::Mask {
+        let growth = lanes::volume_growth(&input.gradient);
+        let strain = lanes::green_lagrange(&input.gradient);
+        let zero = growth.splat(0.0);
+        out.second_piola = [zero; 6];
+        let mut energy = zero;
+        for i in 0..6 {
+            for (j, component) in strain.iter().enumerate() {
+                let modulus = zero.splat(self.stiffness[(i, j)]);
+                out.second_piola[i] = component.mul_add(modulus, out.second_piola[i]);
+                if request == Request::Tangent {
+                    out.tangent[j][i] = modulus;
+                }
+            }
+            energy = strain[i].mul_add(out.second_piola[i] * 0.5, energy);
+        }
+        (out.stored_energy, out.incremental_potential, out.dissipated_mid) = (energy, Some(energy), [zero; 2]);
+        zero.splat(-1.0).lt(growth) & finite(&out.second_piola) & finite(&[energy, growth])
+    }
+}
+
 impl Law for StVenantKirchhoff {
     fn name(&self) -> &'static str {
         "st_venant_kirchhoff"
@@ -138,13 +161,13 @@ impl Law for StVenantKirchhoff {
         out: &mut Response,
     ) -> Result<(), LawError> {
         refuse_mean_elongation(input)?;
-        volume_growth(&input.displacement_gradient)?;
-        let strain = green_lagrange(&input.displacement_gradient);
-        out.second_piola = self.stiffness * strain;
-        if request == Request::Tangent {
-            out.tangent = self.stiffness;
+        let mut lane = LaneResponse::zero(0.0);
+        if !self.answer(&LaneInput::of(input), request, &mut lane) {
+            volume_growth(&input.displacement_gradient)?;
+            return Err(LawError::NonFiniteResponse);
         }
-        finish(0.5 * strain.dot(&out.second_piola), out)
+        lane.write_to(out, input, request);
+        Ok(())
     }
 
     #[inline(always)]
@@ -156,25 +179,7 @@ impl Law for StVenantKirchhoff {
         request: Request,
         out: &mut LaneResponse<V>,
     ) -> Result<(), LaneFailure> {
-        let growth = lanes::volume_growth(&input.gradient);
-        let strain = lanes::green_lagrange(&input.gradient);
-        let stiffness = &self.stiffness;
-        let zero = growth.splat(0.0);
-        out.second_piola = [zero; 6];
-        let mut energy = zero;
-        for i in 0..6 {
-            for j in 0..6 {
-                let modulus = zero.splat(stiffness[(i, j)]);
-                out.second_piola[i] = strain[j].mul_add(modulus, out.second_piola[i]);
-                if request == Request::Tangent {
-                    out.tangent[j][i] = modulus;
-                }
-            }
-            energy = strain[i].mul_add(out.second_piola[i] * 0.5, energy);
-        }
-        (out.stored_energy, out.incremental_potential, out.dissipated_mid) = (energy, Some(energy), [zero; 2]);
-        let sound = zero.splat(-1.0).lt(growth) & finite(&out.second_piola) & finite(&[energy, growth]);
-        if input.mean_elongation.is_none() && V::all(sound) {
+        if input.mean_elongation.is_none() && V::all(self.answer(input, request, out)) {
             return Ok(());
         }
         each_lane(self, input, old, new, request, out)
