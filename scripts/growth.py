@@ -23,6 +23,9 @@ name = "pull"
 increments = { initial = 0.5 }
 [step.tension]
 elongation = 1e-5
+# Every iteration factorises, so that its cost is the same in all sizes.
+[solver]
+keep_factors = false
 """
 PITCH, LAYERS = 60.0, 40
 

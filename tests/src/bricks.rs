@@ -1,10 +1,12 @@
 //! Blocks of bricks by the name of their formulation.
 
+use std::any::Any;
+
 use nalgebra::Matrix3;
 use subrope_fem::solid::{Full, MeanElongation, MeanVolume, SolidBlock, SolidFields, SolidMesh};
 use subrope_fem::{Contribution, FemError};
 use subrope_geometry::{CellKind, Hex8, Hex20, Hex20R, Hex27, Mesh};
-use subrope_material::{EngineeringConstants, Law, StVenantKirchhoff};
+use subrope_material::{BundleLaw, EngineeringConstants, Law, StVenantKirchhoff};
 
 /// A brick and what it averages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,13 +59,48 @@ pub fn brick<L: Law + 'static>(
     law: L,
 ) -> Result<Box<dyn Contribution>, FemError> {
     let solid = SolidMesh { positions: &mesh.points, cells: &mesh.cells, labels: &mesh.cell_labels, frames };
+    compiled(kind, &solid, Compiled::new(law))
+}
+
+/// A law whose blocks are compiled here: a test that made its own would compile every element for its laws, which takes
+/// most of a minute.
+enum Compiled {
+    Bundle(BundleLaw),
+    Linear(StVenantKirchhoff),
+    /// Any other, through a pointer.
+    Other(Box<dyn Law>),
+}
+
+impl Compiled {
+    fn new<L: Law + 'static>(law: L) -> Self {
+        let mut law = Some(law);
+        let known: &mut dyn Any = &mut law;
+        if let Some(bundle) = known.downcast_mut::<Option<BundleLaw>>().and_then(Option::take) {
+            return Self::Bundle(bundle);
+        }
+        if let Some(linear) = known.downcast_mut::<Option<StVenantKirchhoff>>().and_then(Option::take) {
+            return Self::Linear(linear);
+        }
+        Self::Other(Box::new(law.unwrap()))
+    }
+}
+
+fn compiled(kind: Brick, solid: &SolidMesh<'_>, law: Compiled) -> Result<Box<dyn Contribution>, FemError> {
+    match law {
+        Compiled::Bundle(law) => block(kind, solid, law),
+        Compiled::Linear(law) => block(kind, solid, law),
+        Compiled::Other(law) => block(kind, solid, law),
+    }
+}
+
+fn block<L: Law + 'static>(kind: Brick, solid: &SolidMesh<'_>, law: L) -> Result<Box<dyn Contribution>, FemError> {
     Ok(match kind {
-        Brick::Plain => Box::new(SolidBlock::<8, L, Full>::new::<Hex8>(&solid, law)?),
-        Brick::MeanVolume => Box::new(SolidBlock::<8, L, MeanVolume>::new::<Hex8>(&solid, law)?),
-        Brick::MeanElongation => Box::new(SolidBlock::<8, L, MeanElongation>::new::<Hex8>(&solid, law)?),
-        Brick::Serendipity => Box::new(SolidBlock::<20, L, Full>::new::<Hex20>(&solid, law)?),
-        Brick::Reduced => Box::new(SolidBlock::<20, L, Full>::new::<Hex20R>(&solid, law)?),
-        Brick::Quadratic => Box::new(SolidBlock::<27, L, Full>::new::<Hex27>(&solid, law)?),
+        Brick::Plain => Box::new(SolidBlock::<8, L, Full>::new::<Hex8>(solid, law)?),
+        Brick::MeanVolume => Box::new(SolidBlock::<8, L, MeanVolume>::new::<Hex8>(solid, law)?),
+        Brick::MeanElongation => Box::new(SolidBlock::<8, L, MeanElongation>::new::<Hex8>(solid, law)?),
+        Brick::Serendipity => Box::new(SolidBlock::<20, L, Full>::new::<Hex20>(solid, law)?),
+        Brick::Reduced => Box::new(SolidBlock::<20, L, Full>::new::<Hex20R>(solid, law)?),
+        Brick::Quadratic => Box::new(SolidBlock::<27, L, Full>::new::<Hex27>(solid, law)?),
     })
 }
 

@@ -85,8 +85,8 @@ fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result
     let nodes = mesh.kind.nodes();
     // Gradients, frame and volume of a point; positions in the matrix and connectivity of an element.
     let point_bytes = (8 * (3 * nodes + 10) + state_bytes_per_point) as f64;
-    let element_bytes = (4 * 9 * nodes * (nodes + 1) / 2 + 4 * nodes + 72 * per_element) as f64;
-    let matrix_bytes = 20.0 * system.entries as f64;
+    let element_bytes = (4 * 3 * nodes * (nodes + 1) / 2 + 4 * nodes + 72 * per_element) as f64;
+    let matrix_bytes = 8.0 * system.entries as f64;
     let memory = BASE_BYTES
         + points as f64 * point_bytes
         + mesh.cell_count() as f64 * element_bytes

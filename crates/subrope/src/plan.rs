@@ -103,7 +103,7 @@ fn state(scene: &Scene, model: &RopeModel) -> PlanPart {
 
 fn element(scene: &Scene, model: &RopeModel) -> PlanPart {
     let formulation = scene.element.formulation;
-    let per_brick = model.mesh.frames.len() / model.mesh.mesh.cell_count().max(1);
+    let per_brick = model.mesh.mesh.kind.points();
     PlanPart::new("element", format!("{}, {per_brick} points a brick", formulation.word())).without_if(
         !matches!(formulation, Formulation::Hex8MeanVolume | Formulation::Hex8MeanElongation),
         "averages over an element",
@@ -116,12 +116,15 @@ fn solver(model: &RopeModel) -> PlanPart {
     let analysis = system.analysis();
     let ordering = analysis.ordering.name();
     let gigaflops = analysis.fill.flops / 1e9;
+    let kept = model.analysis.keeps_factors();
+    let serve = if kept { "; factors serve later iterations by GMRES" } else { "" };
     if system.is_symmetric() {
-        let uses = format!("LDL^T, {ordering}, {gigaflops:.2} GFLOP");
-        return PlanPart::new("solver", uses)
-            .without("half of the matrix, LU, GMRES", "the tangent is symmetric for this law and these contacts");
+        let uses = format!("LDL^T, {ordering}, {gigaflops:.2} GFLOP{serve}");
+        let symmetric = "the tangent is symmetric for this law and these contacts";
+        let part = PlanPart::new("solver", uses).without("half of the matrix, LU", symmetric);
+        return part.without_if(!kept, "GMRES", "factors of a model of this size are cheap to renew");
     }
-    let uses = format!("LDL^T of the symmetric part and GMRES, {ordering}, {gigaflops:.2} GFLOP");
+    let uses = format!("LDL^T of the symmetric part and GMRES, {ordering}, {gigaflops:.2} GFLOP{serve}");
     PlanPart::new("solver", uses).without("LU", "made only where GMRES stalls")
 }
 

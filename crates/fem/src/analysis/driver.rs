@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::division::{Division, Progress};
+use super::factors::KeptFactors;
 use super::newton::Attempt;
 use super::record::{Control, IncrementRecord, Observer, Phase, Phases, Totals};
 use super::rigid::rigid_motions;
@@ -210,6 +211,12 @@ impl Analysis {
         self.system.as_ref()
     }
 
+    /// Whether factors of an iterate may serve later ones.
+    #[must_use]
+    pub fn keeps_factors(&self) -> bool {
+        self.work.factors.any()
+    }
+
     /// Steps that are done: the index of the step that runs, or of the next one.
     #[must_use]
     pub fn steps_done(&self) -> usize {
@@ -357,6 +364,9 @@ impl Analysis {
             .phases
             .measure(Phase::Analysis, || System::new(&model.kinematics, &model.contributions, &prescribed, options))?;
         self.work = Workspace::new(self.q.len(), self.model.kinematics.node_count(), system.equations().len());
+        if self.options.keep_factors {
+            self.work.factors = KeptFactors::new(system.worth_of_factors());
+        }
         self.system = Some(system);
         self.prescribed = prescribed;
         Ok(())

@@ -2,6 +2,7 @@
 
 mod division;
 mod driver;
+mod factors;
 mod line_search;
 mod newton;
 mod record;

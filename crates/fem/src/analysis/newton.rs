@@ -4,9 +4,10 @@ use super::driver::Analysis;
 use super::record::{IncrementRecord, Phase};
 use super::step::{LoadBefore, Prescription, Step};
 use super::workspace::{Iterate, Workspace};
-use crate::FemError;
 use crate::assembly::{Evaluation, Jump};
 use crate::contribution::{Configuration, Request, Verdict};
+use crate::linear::LinearError;
+use crate::{Equations, FemError};
 
 /// Fractions of the step between which an attempt goes.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,7 @@ impl Analysis {
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
         self.model.contributions.iter_mut().for_each(|c| c.revert());
+        work.factors.forget();
         self.first_iterate(work, attempt, record)?;
         let mut largest_energy = 0.0_f64;
         let mut energy = 0.0;
@@ -100,7 +102,7 @@ impl Analysis {
                 let iterations = record.iterations;
                 return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
             }
-            record.negative_pivots = self.correct(work)?;
+            self.correct_cheaply(work, &record.residuals[seen..], &mut record.negative_pivots)?;
             record.iterations += 1;
             let slope = self.slope(work);
             largest_energy = largest_energy.max(slope.abs());
@@ -156,19 +158,46 @@ impl Analysis {
         self.evaluate(&mut work.base, &work.target, None, Request::Tangent)
     }
 
+    /// Solves for the correction with the factors at hand if they serve, with those of the base otherwise: then their
+    /// negative pivots are told.
+    fn correct_cheaply(
+        &mut self,
+        work: &mut Workspace,
+        residuals: &[f64],
+        negative_pivots: &mut Option<usize>,
+    ) -> Result<(), FemError> {
+        let limits = work.factors.limits(residuals, self.options.force_tolerance);
+        if let (Some(limits), Some(system)) = (&limits, self.system.as_mut()) {
+            work.aim(system.equations());
+            let (rhs, x) = (&work.rhs, &mut work.correction);
+            let solved = self.phases.measure(Phase::Solution, || system.solve_by_kept_factors(limits, rhs, x));
+            match solved {
+                Err(FemError::Linear(LinearError::Stalled { iterations, .. })) => {
+                    self.totals.linear_iterations += iterations;
+                }
+                solved => {
+                    self.totals.linear_iterations += solved?;
+                    return Ok(());
+                }
+            }
+        }
+        *negative_pivots = self.correct(work)?;
+        work.factors.renew(limits.is_some());
+        Ok(())
+    }
+
     /// Factorises at the base and solves for the correction.
     fn correct(&mut self, work: &mut Workspace) -> Result<Option<usize>, FemError> {
         self.totals.factorisations += 1;
         let Some(system) = self.system.as_mut() else { return Ok(None) };
         let pivots = self.phases.measure(Phase::Factorisation, || system.factorise())?;
-        system.equations().gather(&work.base.residual, &mut work.rhs);
-        work.rhs.iter_mut().for_each(|v| *v = -*v);
+        work.aim(system.equations());
         let (rhs, x) = (&work.rhs, &mut work.correction);
         self.totals.linear_iterations += self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
         Ok(pivots)
     }
 
-    pub(super) fn equations(&self) -> Result<&crate::Equations, FemError> {
+    pub(super) fn equations(&self) -> Result<&Equations, FemError> {
         self.system.as_ref().map(crate::System::equations).ok_or(FemError::NonFiniteResidual)
     }
 
@@ -310,6 +339,14 @@ fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
     let n = residuals.len();
     let stalled = !last_resort && n > PATIENCE && residuals[n - 1] > 0.1 * residuals[n - 7];
     stalled || residuals.last().is_some_and(|r| *r > 1e12)
+}
+
+impl Workspace {
+    /// Makes the residual of the base, turned round, the right-hand side.
+    fn aim(&mut self, equations: &Equations) {
+        equations.gather(&self.base.residual, &mut self.rhs);
+        self.rhs.iter_mut().for_each(|v| *v = -*v);
+    }
 }
 
 impl super::workspace::Target {

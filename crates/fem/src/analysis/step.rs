@@ -127,6 +127,8 @@ pub struct NewtonOptions {
     pub line_search: bool,
     /// Whether the first iterate continues the last increment.
     pub extrapolate: bool,
+    /// Whether large factors serve later iterates of an attempt, as the preconditioner of GMRES.
+    pub keep_factors: bool,
     /// Factor on the increment after easy convergence.
     pub growth: f64,
     /// Factor on the increment after a failure.
@@ -145,6 +147,7 @@ impl Default for NewtonOptions {
             max_iterations: 25,
             line_search: true,
             extrapolate: true,
+            keep_factors: true,
             growth: 1.5,
             cutback: 0.5,
             easy_iterations: 6,

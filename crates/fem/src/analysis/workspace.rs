@@ -1,5 +1,6 @@
 //! Vectors of an increment, allocated once per system.
 
+use super::factors::KeptFactors;
 use crate::Energies;
 
 /// A point of the iteration with everything evaluated there.
@@ -60,6 +61,8 @@ pub struct Workspace {
     pub correction: Vec<f64>,
     /// Displacements of a jump of the prescribed coordinates.
     pub jump: Vec<f64>,
+    /// The factors at hand.
+    pub factors: KeptFactors,
 }
 
 impl Workspace {
@@ -77,6 +80,7 @@ impl Workspace {
             rhs: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
             jump: vec![0.0; 3 * nodes],
+            factors: KeptFactors::default(),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::scatter::{self, Cliques, ScatterMap};
 use crate::FemError;
 use crate::contribution::{Configuration, Contribution, Energies, Product, Request, Sink};
 use crate::kinematics::{Kinematics, Reduction, Tie};
-use crate::linear::{AnalysisReport, LinearTerm, SolverOptions, SparsePattern, Storage, TangentSolver};
+use crate::linear::{AnalysisReport, GmresLimits, LinearTerm, SolverOptions, SparsePattern, Storage, TangentSolver};
 
 /// Pattern, scatter maps, matrix values and solver: made once per set of prescribed coordinates.
 pub struct System {
@@ -186,6 +186,25 @@ impl System {
     pub fn solve(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<usize, FemError> {
         let nnz = self.entries();
         Ok(self.solver.solve(&self.values[..nnz], &self.products, rhs, x)?)
+    }
+
+    /// As [`System::solve`] with factors of an earlier assembly, by GMRES as far as `limits` say.
+    ///
+    /// # Errors
+    /// [`FemError::Linear`], with [`LinearError::Stalled`](crate::linear::LinearError::Stalled) where they do not serve.
+    pub fn solve_by_kept_factors(
+        &mut self,
+        limits: &GmresLimits,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> Result<usize, FemError> {
+        let nnz = self.entries();
+        Ok(self.solver.solve_by_kept_factors(&self.values[..nnz], &self.products, limits, rhs, x)?)
+    }
+
+    /// Iterations of GMRES that cost as much as a factorisation.
+    pub fn worth_of_factors(&self) -> f64 {
+        self.solver.worth_of_factors()
     }
 
     /// Matrix values and pattern, for checks.

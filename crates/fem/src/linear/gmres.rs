@@ -4,13 +4,25 @@
 use super::error::LinearError;
 use super::solver::{add, check_solution};
 
-/// Relative residual that ends the iteration: Newton's residual falls by it at best, two more iterations are cheaper than
-/// the digits.
-const TARGET: f64 = 1e-7;
-/// Largest relative residual that is still a useful correction.
-const LIMIT: f64 = 1e-2;
-/// Most iterations.
-const MOST: usize = 80;
+/// How far to iterate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GmresLimits {
+    /// Relative residual that ends the iteration.
+    pub target: f64,
+    /// Largest relative residual that is still a useful correction.
+    pub limit: f64,
+    /// Most iterations.
+    pub most: usize,
+    /// Iterations after which their rate is believed: the iteration ends where it leads nowhere in time.
+    pub trusted: usize,
+}
+
+impl Default for GmresLimits {
+    /// Newton's residual falls by the target at best: two more of its iterations are cheaper than the digits.
+    fn default() -> Self {
+        Self { target: 1e-7, limit: 1e-2, most: 80, trusted: 80 }
+    }
+}
 
 /// A linear map and an approximation of its inverse.
 pub trait LinearOperator {
@@ -54,10 +66,11 @@ impl Gmres {
     /// Solves `A x = b`.
     ///
     /// # Errors
-    /// [`LinearError::Stalled`] when the residual stays above a hundredth of the right-hand side; errors of the operator.
+    /// [`LinearError::Stalled`] when the residual stays above the limit; errors of the operator.
     pub fn solve(
         &mut self,
         operator: &mut dyn LinearOperator,
+        limits: &GmresLimits,
         b: &[f64],
         x: &mut [f64],
     ) -> Result<GmresReport, LinearError> {
@@ -68,17 +81,20 @@ impl Gmres {
         }
         self.start(b, norm);
         let mut iterations = 0;
-        while iterations < MOST && self.residual() > TARGET * norm {
+        while iterations < limits.most && self.residual() > limits.target * norm {
             self.extend(operator, iterations)?;
             iterations += 1;
+            if hopeless(self.residual() / norm, iterations, limits) {
+                break;
+            }
             // The space is exhausted: the solution is exact.
             if self.reduced[iterations] == 0.0 {
                 break;
             }
         }
         let residual = self.residual() / norm;
-        if residual.is_nan() || residual > LIMIT {
-            return Err(LinearError::Stalled { iterations, residual, limit: LIMIT });
+        if residual.is_nan() || residual > limits.limit {
+            return Err(LinearError::Stalled { iterations, residual, limit: limits.limit });
         }
         self.combine(iterations, x);
         check_solution(x)?;
@@ -145,6 +161,12 @@ impl Gmres {
     }
 }
 
+/// Whether at the rate so far a useful correction is out of reach, with a factor of two in favour of going on.
+fn hopeless(residual: f64, iterations: usize, limits: &GmresLimits) -> bool {
+    let reach = 2.0 * limits.most as f64 / iterations as f64;
+    iterations >= limits.trusted && residual.powf(reach) > limits.limit
+}
+
 fn resize(vectors: &mut Vec<Vec<f64>>, at: usize, n: usize) {
     if vectors.len() <= at {
         vectors.resize_with(at + 1, Vec::new);
@@ -198,7 +220,8 @@ mod tests {
         let (b, mut x, mut back) = (wave(n, 0.3), vec![0.0; n], vec![0.0; n]);
         let mut gmres = Gmres::default();
         for _ in 0..2 {
-            let report = gmres.solve(&mut operator, &b, &mut x).unwrap_or_else(|e| unreachable!("{e}"));
+            let report =
+                gmres.solve(&mut operator, &GmresLimits::default(), &b, &mut x).unwrap_or_else(|e| unreachable!("{e}"));
             assert!(report.iterations <= 5, "{report:?}");
             operator.apply(&x, &mut back).unwrap_or_else(|e| unreachable!("{e}"));
             let error: f64 = b.iter().zip(&back).map(|(b, a)| (b - a) * (b - a)).sum();
@@ -219,9 +242,9 @@ mod tests {
                 Ok(())
             }
         }
-        let outcome = Gmres::default().solve(&mut Zero, &[1.0, 2.0], &mut [0.0, 0.0]);
+        let outcome = Gmres::default().solve(&mut Zero, &GmresLimits::default(), &[1.0, 2.0], &mut [0.0, 0.0]);
         assert!(matches!(outcome, Err(LinearError::Stalled { .. } | LinearError::NonFinite { .. })), "{outcome:?}");
-        let outcome = Gmres::default().solve(&mut Zero, &[f64::NAN, 2.0], &mut [0.0, 0.0]);
+        let outcome = Gmres::default().solve(&mut Zero, &GmresLimits::default(), &[f64::NAN, 2.0], &mut [0.0, 0.0]);
         assert!(outcome.is_err());
     }
 }

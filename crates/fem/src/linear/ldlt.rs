@@ -112,8 +112,11 @@ fn factorise_panel(
     let (finished, open) = factor.split_at_mut(supernode.offset - base);
     let target: &mut [f64] = &mut open[..supernode.len()];
     target.fill(0.0);
-    for entry in plan.entries(number) {
-        target[entry.place as usize] += values[entry.slot as usize];
+    for entries in plan.entries(number) {
+        let step = if entries.along_row { supernode.rows } else { 1 };
+        let places = target[entries.place as usize..].iter_mut().step_by(step);
+        let from = &values[entries.slot as usize..][..usize::from(entries.len)];
+        places.zip(from).for_each(|(entry, value)| *entry += value);
     }
     for update in plan.updates(number) {
         let source = &plan.supernodes.list[update.source as usize];

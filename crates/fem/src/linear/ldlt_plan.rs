@@ -15,11 +15,31 @@ pub(super) struct Update {
     pub(super) first_run: u32,
 }
 
-/// One value of the matrix and its place in a panel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
+/// Consecutive values of the matrix and their places in a panel, down a column of it or along a row.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Entries {
     pub(super) slot: u32,
     pub(super) place: u32,
+    /// How many there are.
+    pub(super) len: u16,
+    /// Whether they lie along a row.
+    pub(super) along_row: bool,
+}
+
+impl Entries {
+    /// Goes on with another value of a panel with so many rows, if it is the next one.
+    fn take(&mut self, slot: usize, place: usize, rows: usize) -> bool {
+        let len = usize::from(self.len);
+        let follows = |step: usize| self.slot as usize + len == slot && self.place as usize + len * step == place;
+        let (down, along) =
+            (follows(1) && (len == 1 || !self.along_row), follows(rows) && (len == 1 || self.along_row));
+        if self.len == u16::MAX || !(down || along) {
+            return false;
+        }
+        self.along_row = !down;
+        self.len += 1;
+        true
+    }
 }
 
 pub(super) struct Plan {
@@ -28,7 +48,7 @@ pub(super) struct Plan {
     update_start: Vec<usize>,
     updates: Vec<Update>,
     entry_start: Vec<usize>,
-    entries: Vec<Entry>,
+    entries: Vec<Entries>,
     /// Unknown of the caller at every position of the elimination.
     pub(super) order: Vec<u32>,
 }
@@ -53,7 +73,7 @@ impl Plan {
         &self.updates[self.update_start[supernode]..self.update_start[supernode + 1]]
     }
 
-    pub(super) fn entries(&self, supernode: usize) -> &[Entry] {
+    pub(super) fn entries(&self, supernode: usize) -> &[Entries] {
         &self.entries[self.entry_start[supernode]..self.entry_start[supernode + 1]]
     }
 
@@ -80,7 +100,7 @@ impl Plan {
         self.supernodes.bytes()
             + (self.update_start.len() + self.entry_start.len()) * size_of::<usize>()
             + self.updates.len() * size_of::<Update>()
-            + self.entries.len() * size_of::<Entry>()
+            + self.entries.len() * size_of::<Entries>()
             + self.order.len() * size_of::<u32>()
     }
 }
@@ -141,24 +161,33 @@ fn for_each_target(
 }
 
 /// Places of the lower triangle in the panels. With full storage only the lower triangle in elimination order is read.
-fn entries(pattern: &SparsePattern, order: &[u32], supernodes: &Supernodes) -> (Vec<usize>, Vec<Entry>) {
+fn entries(pattern: &SparsePattern, order: &[u32], supernodes: &Supernodes) -> (Vec<usize>, Vec<Entries>) {
     let position = invert(order);
+    // The components of a node are numbered one after the other, here and there: most values come in threes.
+    let mut found: Vec<(u32, Entries)> = Vec::with_capacity(pattern.nnz() / 2);
+    for_each_lower(pattern, &position, |slot, row, col| {
+        let number = supernodes.of_unknown[col];
+        let supernode = &supernodes.list[number as usize];
+        let place = supernodes.local_row(supernode, row) + (col - supernode.begin) * supernode.rows;
+        let continued = found.last_mut().is_some_and(|(n, run)| *n == number && run.take(slot, place, supernode.rows));
+        if !continued {
+            found.push((number, Entries { slot: slot as u32, place: place as u32, len: 1, along_row: false }));
+        }
+    });
     let mut start = vec![0usize; supernodes.list.len() + 1];
-    for_each_lower(pattern, &position, |_, _, col| start[supernodes.of_unknown[col] as usize + 1] += 1);
+    found.iter().for_each(|(number, _)| start[*number as usize + 1] += 1);
     for i in 0..supernodes.list.len() {
         start[i + 1] += start[i];
     }
     let mut next = start.clone();
-    let mut entries = vec![Entry { slot: 0, place: 0 }; start[supernodes.list.len()]];
-    for_each_lower(pattern, &position, |slot, row, col| {
-        let number = supernodes.of_unknown[col] as usize;
-        let supernode = &supernodes.list[number];
-        let place = supernodes.local_row(supernode, row) + (col - supernode.begin) * supernode.rows;
-        entries[next[number]] = Entry { slot: slot as u32, place: place as u32 };
-        next[number] += 1;
-    });
+    let mut entries = vec![Entries::default(); found.len()];
+    for (number, run) in found {
+        let place = &mut next[number as usize];
+        entries[*place] = run;
+        *place += 1;
+    }
     for span in start.windows(2) {
-        entries[span[0]..span[1]].sort_unstable_by_key(|entry| entry.place);
+        entries[span[0]..span[1]].sort_unstable_by_key(|entries| entries.place);
     }
     (start, entries)
 }

@@ -5,7 +5,7 @@
 //! both; nested dissection; cuts across the body one after the other) and prepares the factors; [`LinearSolver::factorise`] and [`LinearSolver::solve`] repeat
 //! without allocation. Symmetric values are factorised by a supernodal LDLᵀ whose pivots give the inertia, unsymmetric
 //! ones by LU. Every solution is refined and its residual checked. A [`TangentSolver`] spares the LU where it can: the
-//! LDLᵀ of the symmetric part preconditions GMRES.
+//! LDLᵀ of the symmetric part preconditions GMRES, and so do factors of an earlier matrix that is near enough.
 //!
 //! Work is divided at places that do not depend on the number of threads and combined in a fixed order, and every part
 //! runs on sequential dense kernels: results are bitwise equal for any number of threads.
@@ -39,7 +39,7 @@ mod tests;
 
 pub use error::{LinearError, Operand};
 pub use fill::FillEstimate;
-pub use gmres::{Gmres, GmresReport, LinearOperator};
+pub use gmres::{Gmres, GmresLimits, GmresReport, LinearOperator};
 pub use options::{AnalysisReport, FactorReport, Method, SolveReport, SolverOptions};
 pub use ordering::{Candidate, Ordering};
 pub use pattern::{SparsePattern, Storage};

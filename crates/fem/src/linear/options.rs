@@ -69,8 +69,8 @@ impl Default for SolverOptions {
             residual_limit: 1e-9,
             least_refinements: 1,
             most_refinements: 5,
-            relaxation: vec![Relaxation { columns: 12, zeros: 0.8 }, Relaxation { columns: 128, zeros: 0.1 }],
-            widest_supernode: 128,
+            relaxation: vec![Relaxation { columns: 12, zeros: 0.8 }, Relaxation { columns: 40, zeros: 0.1 }],
+            widest_supernode: 40,
             branch_flops: 2e7,
         }
     }

@@ -1,5 +1,7 @@
 //! Structure of a square sparse matrix with symmetric pattern, from the cliques of the elements.
 
+use std::sync::Arc;
+
 use super::error::LinearError;
 
 /// Largest number of unknowns: indices are 32 bits wide and one value is kept as a mark.
@@ -19,12 +21,12 @@ pub enum Storage {
 ///
 /// Rows are sorted within a column and the diagonal is always present, so that the values of a matrix are one slice
 /// of [`SparsePattern::nnz`] numbers. Unknowns that share all their elements (the components of a node) are found and
-/// compressed by the analysis, wherever they are numbered.
+/// compressed by the analysis, wherever they are numbered. A clone shares the structure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SparsePattern {
     n: usize,
-    col_ptr: Vec<usize>,
-    row_idx: Vec<u32>,
+    col_ptr: Arc<[usize]>,
+    row_idx: Arc<[u32]>,
     storage: Storage,
 }
 
@@ -51,7 +53,7 @@ impl SparsePattern {
         let col_ptr = column_pointers(&incidence, &mut gather);
         gather.marker.fill(UNMARKED);
         let row_idx = row_indices(&incidence, &mut gather, &col_ptr);
-        Ok(Self { n, col_ptr, row_idx, storage })
+        Ok(Self { n, col_ptr: col_ptr.into(), row_idx: row_idx.into(), storage })
     }
 
     /// Number of unknowns.
@@ -111,7 +113,7 @@ impl SparsePattern {
             row_idx.extend(self.column(column).iter().filter(|&&row| row as usize >= column));
             col_ptr.push(row_idx.len());
         }
-        Self { n: self.n, col_ptr, row_idx, storage: Storage::Lower }
+        Self { n: self.n, col_ptr: col_ptr.into(), row_idx: row_idx.into(), storage: Storage::Lower }
     }
 
     /// Product `product = A vector` with the values of a matrix in this pattern.

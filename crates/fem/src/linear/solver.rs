@@ -27,8 +27,6 @@ pub struct LinearSolver {
     options: SolverOptions,
     report: AnalysisReport,
     backend: Backend,
-    /// Values last factorised, for the residual and the couplings of the block LU.
-    values: Vec<f64>,
     factorised: bool,
     norm: f64,
     /// Largest entry of every row.
@@ -75,7 +73,6 @@ impl LinearSolver {
             backend: prepared.backend,
             pattern: pattern.clone(),
             options: options.clone(),
-            values: vec![0.0; pattern.nnz()],
             factorised: false,
             norm: 0.0,
             scale: vec![0.0; n],
@@ -98,7 +95,7 @@ impl LinearSolver {
     }
 
     fn bytes(&self) -> usize {
-        let vectors = self.values.len() + 3 * self.pattern.n() + self.buffer.len();
+        let vectors = 3 * self.pattern.n() + self.buffer.len();
         let backend = match &self.backend {
             Backend::Ldlt(ldlt) => ldlt.bytes(),
             Backend::Block(block) => block.bytes(),
@@ -117,27 +114,26 @@ impl LinearSolver {
         self.factorised = false;
         expect_length(Operand::Values, self.pattern.nnz(), values.len())?;
         check_finite(Operand::Values, values)?;
-        self.values.copy_from_slice(values);
         self.norm = self.pattern.measure(values, &mut self.scale, &mut self.residual);
-        let report = self.factorise_backend()?;
+        let report = self.factorise_backend(values)?;
         self.factorised = true;
         Ok(report)
     }
 
-    fn factorise_backend(&mut self) -> Result<FactorReport, LinearError> {
+    fn factorise_backend(&mut self, values: &[f64]) -> Result<FactorReport, LinearError> {
         let limit = self.options.singular_pivot;
         match &mut self.backend {
             Backend::Ldlt(ldlt) => {
-                ldlt.factorise(&self.values).map_err(|error| with_scale(error, &self.scale))?;
+                ldlt.factorise(values).map_err(|error| with_scale(error, &self.scale))?;
                 Ok(check_pivots(ldlt.pivots(), ldlt.order(), &self.scale, limit)?)
             }
             Backend::Block(block) => {
-                block.factorise(&self.values);
+                block.factorise(values);
                 let report = check_pivots(block.pivots(), block.order(), &self.scale, limit)?;
                 Ok(FactorReport { negative_pivots: None, ..report })
             }
             Backend::Sparse(sparse) => {
-                sparse.factorise(&self.values).map_err(|error| with_scale(error, &self.scale))?;
+                sparse.factorise(values).map_err(|error| with_scale(error, &self.scale))?;
                 probe(&mut self.residual);
                 sparse.solve_in_place(&mut self.residual);
                 check_probe(&self.residual, self.norm, limit)?;
@@ -146,24 +142,26 @@ impl LinearSolver {
         }
     }
 
-    /// Solves `A x = b` with the matrix last factorised, refines the solution and checks its residual.
+    /// Solves `A x = b` with the matrix last factorised, whose `values` are not kept: refines the solution and checks its
+    /// residual.
     ///
     /// # Errors
     /// [`LinearError::NotFactorised`], [`LinearError::Length`], [`LinearError::NonFiniteInput`];
     /// [`LinearError::NonFinite`] if the solution overflows, [`LinearError::ResidualTooLarge`] if refinement does not
     /// bring the residual below the limit of the options.
-    pub fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearError> {
+    pub fn solve(&mut self, values: &[f64], rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearError> {
         if !self.factorised {
             return Err(LinearError::NotFactorised);
         }
+        expect_length(Operand::Values, self.pattern.nnz(), values.len())?;
         expect_length(Operand::RightHandSide, self.pattern.n(), rhs.len())?;
         expect_length(Operand::Solution, self.pattern.n(), solution.len())?;
         check_finite(Operand::RightHandSide, rhs)?;
         self.residual.copy_from_slice(rhs);
-        self.apply_inverse();
+        self.apply_inverse(values);
         solution.copy_from_slice(&self.residual);
         check_solution(solution)?;
-        let report = self.refine(rhs, solution)?;
+        let report = self.refine(values, rhs, solution)?;
         check_solution(solution)?;
         if report.residual > self.options.residual_limit {
             return Err(LinearError::ResidualTooLarge {
@@ -179,32 +177,33 @@ impl LinearSolver {
     ///
     /// # Errors
     /// [`LinearError::NotFactorised`], [`LinearError::Length`].
-    pub fn solve_once(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<(), LinearError> {
+    pub fn solve_once(&mut self, values: &[f64], rhs: &[f64], solution: &mut [f64]) -> Result<(), LinearError> {
         if !self.factorised {
             return Err(LinearError::NotFactorised);
         }
+        expect_length(Operand::Values, self.pattern.nnz(), values.len())?;
         expect_length(Operand::RightHandSide, self.pattern.n(), rhs.len())?;
         expect_length(Operand::Solution, self.pattern.n(), solution.len())?;
         self.residual.copy_from_slice(rhs);
-        self.apply_inverse();
+        self.apply_inverse(values);
         solution.copy_from_slice(&self.residual);
         Ok(())
     }
 
     /// Iterative refinement in the working precision; a step that worsens the residual is undone.
-    fn refine(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearError> {
-        let first_residual = self.form_residual(rhs, solution)?;
+    fn refine(&mut self, values: &[f64], rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearError> {
+        let first_residual = self.form_residual(values, rhs, solution)?;
         let mut report = SolveReport { residual: first_residual, first_residual, refinements: 0 };
         let target = self.options.target_residual;
         while report.refinements < self.options.most_refinements
             && report.residual > 0.0
             && (report.refinements < self.options.least_refinements || report.residual > target)
         {
-            self.apply_inverse();
+            self.apply_inverse(values);
             add(solution, &self.residual, 1.0);
             // The correction is needed again if it has to be undone.
             self.permuted.copy_from_slice(&self.residual);
-            let residual = self.form_residual(rhs, solution)?;
+            let residual = self.form_residual(values, rhs, solution)?;
             report.refinements += 1;
             if residual > report.residual || residual.is_nan() {
                 add(solution, &self.permuted, -1.0);
@@ -220,8 +219,8 @@ impl LinearSolver {
     }
 
     /// `b - A x` in `self.residual`; returns its norm relative to `|A| |x| + |b|`.
-    fn form_residual(&mut self, rhs: &[f64], solution: &[f64]) -> Result<f64, LinearError> {
-        self.pattern.multiply(&self.values, solution, &mut self.residual)?;
+    fn form_residual(&mut self, values: &[f64], rhs: &[f64], solution: &[f64]) -> Result<f64, LinearError> {
+        self.pattern.multiply(values, solution, &mut self.residual)?;
         let mut largest = 0.0f64;
         for (residual, &b) in self.residual.iter_mut().zip(rhs) {
             *residual = b - *residual;
@@ -231,9 +230,9 @@ impl LinearSolver {
         Ok(if largest == 0.0 { 0.0 } else { largest / scale })
     }
 
-    /// Overwrites `self.residual` by `A⁻¹` times itself.
-    fn apply_inverse(&mut self) {
-        let Self { backend, values, residual, permuted, buffer, .. } = self;
+    /// Overwrites `self.residual` by `A⁻¹` times itself. The block LU takes its couplings from `values`.
+    fn apply_inverse(&mut self, values: &[f64]) {
+        let Self { backend, residual, permuted, buffer, .. } = self;
         match backend {
             Backend::Ldlt(ldlt) => {
                 gather(residual, ldlt.order(), permuted);

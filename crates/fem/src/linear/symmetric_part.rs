@@ -38,6 +38,11 @@ impl SymmetricPart {
         &self.values
     }
 
+    /// Those asked for last.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     pub(super) fn bytes(&self) -> usize {
         self.pattern.bytes() + self.slots.len() * size_of::<[u32; 2]>() + self.values.len() * size_of::<f64>()
     }

@@ -58,6 +58,11 @@ impl MeshModel {
         Ok((model, ignored))
     }
 
+    /// Frees the fibre frames: bricks have theirs once they are made.
+    pub(crate) fn drop_frames(&mut self) {
+        self.frames = Vec::new();
+    }
+
     fn generate(entry: &scene::Strand, kind: CellKind) -> Result<Self, ModelError> {
         let strand = strand_of(entry, kind)?;
         let mut mesh = strand.mesh()?;

@@ -182,6 +182,7 @@ fn newton(scene: &Scene) -> NewtonOptions {
         max_iterations: solver.max_iterations,
         line_search: solver.line_search == LineSearch::Auto,
         extrapolate: solver.extrapolate,
+        keep_factors: solver.keep_factors,
         growth: solver.growth,
         cutback: solver.cutback,
         temperature: scene.temperature,

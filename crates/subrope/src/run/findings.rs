@@ -5,6 +5,8 @@
 //! smallest)/mean width in the section's plane; centre = dissipation-weighted coordinate towards the tension side over
 //! the radius; 90 % volume = smallest volume fraction that holds 90 % of a mode's dissipation.
 
+use std::cell::LazyCell;
+
 use nalgebra::Vector3;
 use serde::Serialize;
 use subrope_fem::analysis::Analysis;
@@ -13,6 +15,7 @@ use subrope_geometry::Mesh;
 use subrope_material::StateKind;
 
 use super::sections::{SectionShape, rotation_vector, section_shapes};
+use super::session::integration_points;
 
 /// Findings on a bent strand.
 #[derive(Clone, Debug, Serialize)]
@@ -119,7 +122,7 @@ const LEAST_BEND: f64 = 1e-6;
 impl Findings {
     /// Findings at the committed state; `None` when the mesh has no sections along z or is not bent.
     #[must_use]
-    pub fn new(mesh: &Mesh, points: &[Vector3<f64>], analysis: &Analysis) -> Option<Self> {
+    pub fn new(mesh: &Mesh, analysis: &Analysis) -> Option<Self> {
         let sections = section_shapes(mesh, analysis.displacement());
         let (first, last) = (sections.first()?, sections.last()?);
         if sections.len() < 5 {
@@ -139,7 +142,9 @@ impl Findings {
         let zones = zones(&sections, &curvature, mean, middle, radius);
         let fields = analysis.model().contributions.iter().find_map(|c| c.fields());
         let side = Vector3::z().cross(&axis);
-        let mode = |m| fields.and_then(|f| mode_finding(f, points, m, &side, radius));
+        // Not needed where nothing slides.
+        let points = LazyCell::new(|| integration_points(mesh));
+        let mode = |m| fields.and_then(|f| mode_finding(f, &points, m, &side, radius));
         let (transverse, longitudinal) = (mode(Mode::Transverse), mode(Mode::Longitudinal));
         Some(Self {
             mean_curvature_per_mm: mean,
@@ -198,14 +203,14 @@ fn mesh_radius(mesh: &Mesh) -> f64 {
 
 fn mode_finding(
     fields: &dyn SolidFields,
-    points: &[Vector3<f64>],
+    points: &LazyCell<Vec<Vector3<f64>>, impl FnOnce() -> Vec<Vector3<f64>>>,
     mode: Mode,
     side: &Vector3<f64>,
     radius: f64,
 ) -> Option<ModeFinding> {
     let offset = fields.state_variables().iter().find(|v| v.kind == mode.kind())?.offset;
     let per_element = fields.points_per_element();
-    let mut samples: Vec<(f64, f64, usize)> = Vec::with_capacity(points.len());
+    let mut samples: Vec<(f64, f64, usize)> = Vec::with_capacity(fields.element_count() * per_element);
     for element in 0..fields.element_count() {
         for q in 0..per_element {
             let (state, volume) = fields.point_state(element, q);

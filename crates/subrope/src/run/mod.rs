@@ -88,7 +88,7 @@ pub struct RunOutcome {
 /// hold everything up to the last converged increment) or when output fails.
 pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observer) -> Result<RunOutcome, Error> {
     let file = SceneFile::load(path)?;
-    let mut model = told(RopeModel::new(&file, options.threads)?, observer);
+    let mut model = ready(RopeModel::new(&file, options.threads)?, observer);
     let folder = options.folder.map_or_else(|| file.output_folder(), Path::to_path_buf);
     let clock = Clock::start();
     // Everything that can be refused is refused before files of an earlier run are replaced.
@@ -104,8 +104,9 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
 /// Name of the file with the numbers at the end.
 const SUMMARY: &str = "summary.json";
 
-/// Tells what of a deck is not read.
-fn told(model: RopeModel, observer: &mut dyn Observer) -> RopeModel {
+/// Tells what of a deck is not read, and lets go of what a run does not need.
+fn ready(mut model: RopeModel, observer: &mut dyn Observer) -> RopeModel {
+    model.mesh.drop_frames();
     for ignored in &model.ignored {
         let place = format!("{}:{}", ignored.file.display(), ignored.line);
         observer.on_warning(&format!("{place}: *{} is not read", ignored.keyword));

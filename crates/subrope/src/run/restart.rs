@@ -8,7 +8,7 @@ use subrope_io::IoError;
 use super::checkpoint::{Found, VERSION};
 use super::clock::Clock;
 use super::session::Session;
-use super::{RunError, RunOptions, RunOutcome, SUMMARY, told};
+use super::{RunError, RunOptions, RunOutcome, SUMMARY, ready};
 use crate::Error;
 use crate::model::RopeModel;
 use crate::plan::Plan;
@@ -105,7 +105,7 @@ pub fn restart_scene(
     if found.is_previous {
         observer.on_warning(&"there is no last checkpoint: the run goes on from the one before");
     }
-    let mut model = told(RopeModel::new(&file, options.threads)?, observer);
+    let mut model = ready(RopeModel::new(&file, options.threads)?, observer);
     let clock = Clock::start();
     found.restore(&mut model.analysis).map_err(RunError::from)?;
     observer.on_plan(&Plan::new(&file.scene, &model));

@@ -341,9 +341,11 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
 pub fn integration_points(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
     use subrope_geometry::{CellKind, Hex8, Hex20, Hex20R, Hex27, Hexahedron};
     fn positions<H: Hexahedron<N>, const N: usize>(mesh: &subrope_geometry::Mesh) -> Vec<Vector3<f64>> {
+        let mut positions = Vec::with_capacity(mesh.cell_count() * mesh.kind.points());
         let cells = (0..mesh.cell_count()).filter_map(|e| mesh.cell_points::<N>(e));
         let at = |x: &[Vector3<f64>; N], xi| x.iter().zip(H::shape(xi)).map(|(p, n)| p * n).sum::<Vector3<f64>>();
-        cells.flat_map(|x| H::quadrature().iter().map(move |q| at(&x, q.xi))).collect()
+        positions.extend(cells.flat_map(|x| H::quadrature().iter().map(move |q| at(&x, q.xi))));
+        positions
     }
     match mesh.kind {
         CellKind::Hex8 => positions::<Hex8, 8>(mesh),

@@ -11,7 +11,6 @@ use super::clock::Reading;
 use super::cycles::CycleRow;
 use super::findings::{Findings, PeakDensities};
 use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, contact_lines};
-use super::session::integration_points;
 use super::strands::{self, StrandSummary};
 use crate::contact::{self, PairSummary};
 use crate::model::RopeModel;
@@ -259,7 +258,7 @@ impl Summary {
             strands: strands::strands(&model.mesh, analysis),
             cycles: cycles.to_vec(),
             peak_densities: PeakDensities::new(analysis),
-            findings: Findings::new(mesh, &integration_points(mesh), analysis),
+            findings: Findings::new(mesh, analysis),
             sizing: RopeSizing::of(&file.scene).map(|sizing| sizing.summary()),
             plan: Plan::new(&file.scene, model),
             size: sizes(model),

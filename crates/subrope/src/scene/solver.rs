@@ -22,6 +22,9 @@ pub struct Solver {
     pub line_search: LineSearch,
     /// Start each increment from the extrapolated last one.
     pub extrapolate: bool,
+    /// Let large factors serve later iterations of an increment as the preconditioner of GMRES, where that costs less than
+    /// new ones.
+    pub keep_factors: bool,
     /// Factor of the next increment after quick convergence \[-\], at least 1.
     #[schemars(range(min = 1.0))]
     pub growth: f64,
@@ -45,6 +48,7 @@ impl Default for Solver {
             max_iterations: 20,
             line_search: LineSearch::Auto,
             extrapolate: true,
+            keep_factors: true,
             growth: 1.5,
             cutback: 0.5,
             stabilisation: None,

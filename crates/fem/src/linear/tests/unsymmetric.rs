@@ -6,7 +6,7 @@ use super::fixtures::{
     Grid, Random, brick_stiffness, dense_solution, difference, hold, pattern_of, random_cliques, random_values, strand,
 };
 use crate::linear::{
-    LinearError, LinearSolver, LinearTerm, Method, SolverOptions, SparsePattern, Storage, TangentSolver,
+    GmresLimits, LinearError, LinearSolver, LinearTerm, Method, SolverOptions, SparsePattern, Storage, TangentSolver,
 };
 
 const METHODS: [Method; 2] = [Method::BlockLu, Method::SparseLu];
@@ -20,7 +20,7 @@ fn solve(pattern: &SparsePattern, values: &[f64], rhs: &[f64], options: &SolverO
     let report = solver.factorise(values).unwrap();
     assert_eq!(report.negative_pivots, None);
     let mut solution = vec![0.0; pattern.n()];
-    let report = solver.solve(rhs, &mut solution).unwrap();
+    let report = solver.solve(values, rhs, &mut solution).unwrap();
     assert!(report.residual < 1e-14, "{report:?}");
     solution
 }
@@ -51,7 +51,7 @@ fn symmetric_values_give_the_symmetric_solution() {
     let mut solver = LinearSolver::analyse(&lower, &SolverOptions::default()).unwrap();
     solver.factorise(&lower_values).unwrap();
     let mut expected = vec![0.0; lower.n()];
-    solver.solve(&rhs, &mut expected).unwrap();
+    solver.solve(&lower_values, &rhs, &mut expected).unwrap();
     for method in METHODS {
         assert!(difference(&solve(&full, &full_values, &rhs, &by(method)), &expected) < 1e-8);
     }
@@ -184,6 +184,36 @@ fn solve_tangent(pattern: &SparsePattern, values: &[f64], term: &RankOne, rhs: &
     let mut solution = vec![0.0; pattern.n()];
     let iterations = solver.solve(values, term, rhs, &mut solution).unwrap();
     (solution, iterations)
+}
+
+#[test]
+fn factors_serve_values_near_their_own() {
+    for storage in [Storage::Lower, Storage::Full] {
+        let (pattern, values) = strand(4, 4, 30, storage);
+        let rhs = Random(15).vector(pattern.n());
+        let mut random = Random(16);
+        let mut change = |size: f64| {
+            let mut values = values.clone();
+            for column in 0..pattern.n() {
+                let at = pattern.slot(column, column).unwrap();
+                values[at] *= 1.0 + size * random.signed();
+            }
+            values
+        };
+        let mut solver = TangentSolver::analyse(pattern.clone(), &SolverOptions::default()).unwrap();
+        solver.factorise(&values).unwrap();
+        let none = RankOne(Vec::new(), Vec::new());
+        let limits = GmresLimits { target: 1e-6, limit: 1e-6, most: 12, trusted: 3 };
+        let (mut solution, mut back) = (vec![0.0; pattern.n()], vec![0.0; pattern.n()]);
+        let near = change(1e-5);
+        let iterations = solver.solve_by_kept_factors(&near, &none, &limits, &rhs, &mut solution).unwrap();
+        pattern.multiply(&near, &solution, &mut back).unwrap();
+        assert!(difference(&back, &rhs) < 1e-5 && iterations <= 6, "{iterations} {}", difference(&back, &rhs));
+        // Far away it is told early.
+        let far = change(3.0);
+        let outcome = solver.solve_by_kept_factors(&far, &none, &limits, &rhs, &mut solution);
+        assert!(matches!(outcome, Err(LinearError::Stalled { iterations: 3..=12, .. })), "{outcome:?}");
+    }
 }
 
 #[test]
