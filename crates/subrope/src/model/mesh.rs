@@ -42,6 +42,7 @@ impl MeshModel {
     /// # Errors
     /// [`ModelError::Geometry`], [`ModelError::Deck`], [`ModelError::MissingFibres`], [`ModelError::WrongElement`].
     pub fn new(scene: &Scene, deck: Option<&std::path::Path>) -> Result<(Self, Vec<Ignored>), ModelError> {
+        crate::estimate::refuse_scene(scene)?;
         let kind = cell_kind(scene.element.formulation);
         let (model, ignored) = match (&scene.strand, &scene.rope, &scene.deck, deck) {
             (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
