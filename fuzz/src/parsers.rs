@@ -46,7 +46,7 @@ const BRICK: &str = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1
 /// Elements and steps up to which a scene is made into a model.
 const FEW: f64 = 64.0;
 
-/// A scene: read, checked, counted; made into a model when it is small.
+/// A scene: read, checked, counted; made into a model when it is a small strand.
 pub fn scene(data: &[u8]) {
     let path = Path::new("scene.toml");
     let file = match SceneFile::of_bytes(path, data.to_vec(), |_| Ok(BRICK.as_bytes().to_vec())) {
@@ -63,7 +63,8 @@ pub fn scene(data: &[u8]) {
             let _ = motion.path.value(0.5, 0.0);
         }
     }
-    if file.deck.is_none() && size.elements <= FEW && size.steps <= FEW {
+    // Strands of a rope that touch take a search, a hundred times the rest.
+    if file.scene.strand.is_some() && size.elements <= FEW && size.steps <= FEW {
         if let Err(error) = RopeModel::new(&file, Some(1)) {
             told(&error.to_string());
         }

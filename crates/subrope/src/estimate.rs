@@ -171,6 +171,27 @@ pub fn refuse_beyond(what: impl FnOnce() -> String, needed: f64, available: f64)
     Err(ModelError::TooLarge { what: what(), needed_gb: needed / 1e9, available_gb: available / 1e9 })
 }
 
+/// Memory for a byte of a deck while it is read, at least: numbers, labels, their index \[bytes\].
+const DECK_BYTE: f64 = 4.0;
+
+/// Refuses a deck that cannot be read into the memory at hand; `bytes` is the length of its file.
+///
+/// # Errors
+/// [`ModelError::TooLarge`].
+pub fn refuse_deck(bytes: u64) -> Result<(), ModelError> {
+    refuse_beyond(|| format!("{} MB of the deck", bytes >> 20), BASE + DECK_BYTE * bytes as f64, limit())
+}
+
+/// Refuses a mesh that has been read and of which no model fits.
+///
+/// # Errors
+/// [`ModelError::TooLarge`].
+pub fn refuse_mesh(formulation: Formulation, elements: usize, nodes: usize) -> Result<(), ModelError> {
+    let what = || format!("{elements} elements with {nodes} nodes");
+    // A slender body has a small factor: nothing is known of it here.
+    refuse_beyond(what, BASE + mesh_bytes(&Brick::of(formulation), elements as f64, nodes as f64, 0.0), limit())
+}
+
 /// Refuses a scene whose model or steps cannot fit.
 ///
 /// # Errors
