@@ -16,7 +16,7 @@ export CARGO_TARGET_DIR="$root/target/fuzz"
 cd fuzz
 cargo +nightly fuzz build -s none --release
 
-# Seeds are read, not changed: those that were made (cargo run --example seeds), and files of the project.
+# Seeds are read, not changed: those that were made, and files of the project.
 seeds() {
     [ ! -d "seeds/$1" ] || printf '%s\n' "seeds/$1"
     case $1 in

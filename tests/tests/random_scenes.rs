@@ -77,7 +77,7 @@ impl Case {
         }
         let frames = (0..mesh.cell_count()).map(|_| numbers.rotation()).collect();
         let mut vector = |size: f64| Vector3::from_fn(|_, _| size * numbers.signed());
-        let (force, place, turn) = (vector(4.0), vector(0.08), vector(4.0));
+        let (force, place, turn) = (vector(0.6), vector(0.08), vector(4.0));
         let pulled = numbers.chance(0.4);
         let motion = if pulled { [force, Vector3::zeros()] } else { [place, turn] };
         Self { formulation, mesh, frames, law: law(&mut numbers), motion, pulled }
@@ -125,7 +125,7 @@ impl Case {
         let [first, second] = self.motion;
         let steps = [1.0, 0.2, 0.7].iter().enumerate().map(|(index, factor)| {
             let (a, b) = (first * *factor, second * *factor);
-            let head = format!("[[step]]\nname = \"step {index}\"\nincrements = {{ fixed = 4 }}\n[[step.prescribe]]\npoint = \"END_B\"\n");
+            let head = format!("[[step]]\nname = \"step {index}\"\nincrements = {{ fixed = 6 }}\n[[step.prescribe]]\npoint = \"END_B\"\n");
             let turn = format!("rx = {:?}\nry = {:?}\nrz = {:?}\n", b.x, b.y, b.z);
             let [x, y, z] = [a.x, a.y, a.z];
             if self.pulled {

@@ -1,5 +1,10 @@
-//! Writes seeds that are no files of the project: a checkpoint of the small model, a deck with an included file, a study.
-//! Arguments: the folder of the seeds.
+//! Writes the seeds of fuzzing that are no files of the project: a checkpoint of the small model, a deck with an included
+//! file, a study, points: `cargo test --test fuzz_seeds -- --ignored`.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+#[allow(dead_code, reason = "only its model is needed")]
+#[path = "../../fuzz/src/parsers.rs"]
+mod parsers;
 
 use std::path::{Path, PathBuf};
 
@@ -89,30 +94,31 @@ struct Keep(PathBuf);
 
 impl Observer for Keep {
     fn converged(&mut self, analysis: &Analysis, _: &IncrementRecord) -> Result<Control, FemError> {
-        let mut file = CheckpointWriter::create(&self.0, &Writes::default()).expect("the folder is there");
-        file.bytes("version", 1, &mut "0".as_bytes()).expect("there is room");
-        file.counts("stable", 1, &mut std::iter::once(1)).expect("there is room");
+        let mut file = CheckpointWriter::create(&self.0, &Writes::default()).unwrap();
+        file.bytes("version", 1, &mut "0".as_bytes()).unwrap();
+        file.counts("stable", 1, &mut std::iter::once(1)).unwrap();
         analysis.save(&mut ToFile(&mut file))?;
-        file.commit().expect("there is room");
+        file.commit().unwrap();
         Ok(Control::Stop)
     }
 }
 
-fn main() {
-    let folder = std::env::args().nth(1).expect("the folder of the seeds");
+#[test]
+#[ignore = "writes into fuzz/seeds"]
+fn seeds_are_written() {
     let place = |target: &str, name: &str| {
-        let folder = Path::new(&folder).join(target);
-        std::fs::create_dir_all(&folder).expect("a folder can be made");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/seeds").join(target);
+        std::fs::create_dir_all(&folder).unwrap();
         folder.join(name)
     };
-    std::fs::write(place("deck", "with_an_include"), DECK).expect("there is room");
-    std::fs::write(place("table", "study"), STUDY).expect("there is room");
-    std::fs::write(place("table", "history"), "htime [s],force [N]\n0.5,-1e-9\n1,2\n").expect("there is room");
+    std::fs::write(place("deck", "with_an_include"), DECK).unwrap();
+    std::fs::write(place("table", "study"), STUDY).unwrap();
+    std::fs::write(place("table", "history"), "htime [s],force [N]\n0.5,-1e-9\n1,2\n").unwrap();
     let point = include_str!("../../scenes/points/friction_loop.toml");
-    std::fs::write(place("table", "point"), format!("t{point}")).expect("there is room");
-    std::fs::write(place("table", "paths"), PATHS).expect("there is room");
-    std::fs::write(place("table", "failed"), FAILED).expect("there is room");
-    let mut model = subrope_fuzz::tiny();
+    std::fs::write(place("table", "point"), format!("t{point}")).unwrap();
+    std::fs::write(place("table", "paths"), PATHS).unwrap();
+    std::fs::write(place("table", "failed"), FAILED).unwrap();
+    let mut model = parsers::tiny();
     let step = model.steps[0].clone();
     let stopped = model.analysis.run_step(&step, &mut Keep(place("checkpoint", "tiny")));
     assert!(matches!(stopped, Err(FemError::Interrupted)), "{stopped:?}");
