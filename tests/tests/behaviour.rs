@@ -13,7 +13,8 @@ use subrope_fem::analysis::{Increments, Silent};
 use subrope_geometry::{CellKind, GeometryError};
 use subrope_material::CompressibleNeoHooke;
 use subrope_tests::{
-    Brick, Lattice, Problem, Recorder, Run, brick, constant_frames, run_scene, scene, scientific, try_run,
+    Brick, Lattice, Problem, Recorder, Run, brick, constant_frames, run_scene, scene, scene_file, scientific,
+    short_rope, try_run,
 };
 
 const ELASTIC: &str = r#"[law]
@@ -328,13 +329,37 @@ fn threads_do_not_change_a_bit() {
     for (formulation, law) in
         [("hex8", FRICTION), ("hex8_mean_elongation", PRESSURE), ("hex20r", FRICTION), ("hex27", FRICTION)]
     {
-        let text = strand(formulation, law, ENDS, &bend("bend", 20.0, 4));
-        let run = |threads| try_run(&text, None, threads).unwrap().unwrap();
-        let (one, two) = (fingerprint(&run(1)), fingerprint(&run(2)));
-        assert_eq!(one.len(), two.len(), "{formulation}");
-        let differing = one.iter().zip(&two).filter(|(a, b)| a != b).count();
-        assert_eq!(differing, 0, "{formulation}: {differing} of {} numbers differ", one.len());
+        same_on_all_threads(formulation, &strand(formulation, law, ENDS, &bend("bend", 20.0, 4)));
     }
+}
+
+/// A scene on 1, 2, 4 and 8 threads.
+fn same_on_all_threads(name: &str, text: &str) {
+    let run = |threads| fingerprint(&try_run(text, None, threads).unwrap().unwrap());
+    let one = run(1);
+    for threads in [2, 4, 8] {
+        let many = run(threads);
+        assert_eq!(one.len(), many.len(), "{name}, {threads} threads");
+        let differing = one.iter().zip(&many).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "{name}, {threads} threads: {differing} of {} numbers differ", one.len());
+    }
+}
+
+/// Enough bricks that assembly and factorisation are shared.
+#[test]
+fn threads_do_not_change_a_bit_of_the_whole_strand() {
+    let text = scene_file("bent_strand.toml");
+    let start = text.find("[[step]]").unwrap();
+    same_on_all_threads("2400 bricks", &format!("{}{}", &text[..start], bend("bend", 6.0, 2)));
+}
+
+#[test]
+fn threads_do_not_change_a_bit_of_ropes_in_contact() {
+    let pull = "[[step]]\nname = \"pull\"\nincrements = { fixed = 3 }\ntension = { elongation = 0.01 }\n";
+    let back = "[[step]]\nname = \"back\"\nincrements = { fixed = 2 }\ntension = { elongation = 0.006 }\n";
+    let rope = short_rope(&format!("{pull}{back}"));
+    same_on_all_threads("rope", &rope);
+    same_on_all_threads("slice", &rope.replace("[rope]\n", "[rope]\nsymmetry = \"helical\"\n"));
 }
 
 /// The same scene with and without a failed step in between: not a bit of difference.

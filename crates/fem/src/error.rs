@@ -4,6 +4,7 @@ use subrope_geometry::GeometryError;
 use subrope_material::LawError;
 
 use crate::linear::LinearError;
+use crate::solid::FailedPoint;
 
 /// What went wrong. [`FemError::is_recoverable`] tells whether a shorter increment may help.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -17,6 +18,8 @@ pub enum FemError {
         point: usize,
         /// Cause.
         source: LawError,
+        /// What the law was asked.
+        asked: Box<FailedPoint>,
     },
     /// The volume of an element vanished or turned inside out, so that its mean does not exist.
     #[error("element {element}: the mean volume ratio {ratio:e} is not positive: shorten the increment")]
@@ -201,6 +204,17 @@ pub enum FemError {
 }
 
 impl FemError {
+    /// The point at which a law gave no answer, if that is what ended a step or an attempt: label of the element, number of
+    /// the point, what it was asked, and why it has no answer.
+    #[must_use]
+    pub fn failed_point(&self) -> Option<(u64, usize, &FailedPoint, &LawError)> {
+        match self {
+            Self::Law { element, point, source, asked } => Some((*element, *point, asked, source)),
+            Self::IncrementTooShort { cause, .. } | Self::FixedIncrementFailed { cause, .. } => cause.failed_point(),
+            _ => None,
+        }
+    }
+
     /// Whether a shorter increment from the committed state may succeed.
     #[must_use]
     pub fn is_recoverable(&self) -> bool {

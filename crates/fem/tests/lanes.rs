@@ -1,31 +1,18 @@
 //! Laws and elements in the lanes of a vector: the same answers as point by point, in every instruction set.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use subrope_fem::Request;
 use subrope_fem::solid::{
     ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume, PointGeometry, Wide,
 };
 use subrope_material::lanes::{Lanes, MAX_LANES};
+use subrope_material::testkit::Numbers;
 use subrope_material::{
     BundleLaw, BundleParameters, Compaction, CompressibleNeoHooke, FibreNeoHooke, Friction, Hardening, LaneFailure,
     LaneInput, LaneResponse, Law, LawError, ModeParameters, PointInput, Request as LawRequest, Response,
     StVenantKirchhoff,
 };
-
-/// Reproducible numbers between -1 and 1.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn matrix(&mut self, size: f64) -> Matrix3<f64> {
-        Matrix3::from_fn(|_, _| size * self.next())
-    }
-}
 
 fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> Result<BundleLaw, LawError> {
     let mode = |k, tau, hardening, x| ModeParameters::sliding(k, Friction { tau, hardening, x, mu });
@@ -118,18 +105,18 @@ fn compare<S: Simd>(out: &LaneResponse<Wide<S>>, lane: usize, single: &Response,
 }
 
 fn compare_laws<L: Law>(law: &L, averaged: bool) {
-    let mut numbers = Numbers(7);
+    let mut numbers = Numbers::new(7);
     for case in 0..600 {
         // Lanes of very different strain, so that they take different branches; some are inverted.
         let size = |lane: usize| [1e-13, 1e-3, 0.02, 0.1, 0.3, 0.6, 1.0, 0.05][(lane * 5 + case) % 8];
         let inputs: Vec<_> = (0..1 + case % MAX_LANES)
             .map(|lane| {
                 let point = PointInput::new(numbers.matrix(size(lane)));
-                if averaged { point.with_mean_elongation(0.02 * numbers.next()) } else { point }
+                if averaged { point.with_mean_elongation(0.02 * numbers.signed()) } else { point }
             })
             .collect();
         let old: Vec<f64> = (0..inputs.len() * law.state_len())
-            .map(|at| if case % 3 == 0 || at % 7 == 0 { 0.0 } else { 0.02 * numbers.next().abs() })
+            .map(|at| if case % 3 == 0 || at % 7 == 0 { 0.0 } else { 0.02 * numbers.signed().abs() })
             .collect();
         Arch::new().dispatch(Compare { law, inputs: &inputs, old: &old });
         Simd::vectorize(Scalar, Compare { law, inputs: &inputs, old: &old });
@@ -150,7 +137,7 @@ fn lanes_answer_as_points_do() {
 #[test]
 fn a_number_that_is_missing_names_its_lane() {
     let law = &bundles().unwrap()[1];
-    let mut numbers = Numbers(3);
+    let mut numbers = Numbers::new(3);
     for bad in [f64::NAN, f64::INFINITY] {
         for lane in 0..MAX_LANES {
             let mut inputs: Vec<_> = (0..MAX_LANES).map(|_| PointInput::new(numbers.matrix(0.05))).collect();
@@ -188,15 +175,15 @@ impl<F: Formulation<8>> WithSimd for Element<'_, F> {
 fn points(numbers: &mut Numbers) -> Vec<PointGeometry<8>> {
     let frame = Rotation3::from_scaled_axis(Vector3::new(0.3, -0.8, 0.4)).into_inner();
     let mut point = || PointGeometry {
-        gradient: std::array::from_fn(|_| std::array::from_fn(|_| numbers.next())),
+        gradient: std::array::from_fn(|_| std::array::from_fn(|_| numbers.signed())),
         frame,
-        volume: 1.0 + 0.5 * numbers.next(),
+        volume: 1.0 + 0.5 * numbers.signed(),
     };
     (0..8).map(|_| point()).collect()
 }
 
 fn compare_elements<F: Formulation<8>>(laws: &[BundleLaw]) {
-    let mut numbers = Numbers(11);
+    let mut numbers = Numbers::new(11);
     for law in laws {
         for _ in 0..20 {
             let points = points(&mut numbers);
@@ -204,7 +191,7 @@ fn compare_elements<F: Formulation<8>>(laws: &[BundleLaw]) {
             let input = ElementInput {
                 law,
                 points: &points,
-                displacement: std::array::from_fn(|_| std::array::from_fn(|_| 0.02 * numbers.next())),
+                displacement: std::array::from_fn(|_| std::array::from_fn(|_| 0.02 * numbers.signed())),
                 old: &old,
                 time_increment: 1.0,
                 temperature: 293.15,

@@ -17,6 +17,7 @@ use blocks::Block;
 use nalgebra::Matrix3;
 use raw::Raw;
 use source::{Fault, Line, Source};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -91,6 +92,16 @@ pub fn read_deck(path: &Path) -> Result<Deck, IoError> {
 pub fn parse_deck(name: &Path, text: &str) -> Result<Deck, IoError> {
     let mut source = Source::text(name, text);
     parse(&mut source).map_err(|fault| describe(fault, &source.files, Some(text)).into())
+}
+
+/// Reads a deck from texts by their names, among which `name` and all that it includes are looked for; no file is opened.
+///
+/// # Errors
+/// As [`read_deck`].
+pub fn parse_deck_of(name: &Path, texts: &BTreeMap<PathBuf, Vec<u8>>) -> Result<Deck, IoError> {
+    let text = texts.get(name).map(|bytes| String::from_utf8_lossy(bytes).into_owned()).unwrap_or_default();
+    let mut source = Source::texts(name, texts.clone());
+    parse(&mut source).map_err(|fault| describe(fault, &source.files, Some(&text)).into())
 }
 
 fn parse(source: &mut Source) -> Result<Deck, Fault> {

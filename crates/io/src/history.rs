@@ -1,6 +1,7 @@
 //! Histories: one row of numbers per increment as comma-separated text.
 
 use crate::error::{Action, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
+use crate::input;
 use crate::writes::Writes;
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
@@ -246,10 +247,19 @@ impl History {
 /// # Errors
 /// [`IoError::Read`] when the file cannot be read, [`IoError::Text`] with the line of a malformed header or row.
 pub fn read_history(path: &Path) -> Result<History, IoError> {
-    let text = std::fs::read_to_string(path).map_err(|source| IoError::Read { path: path.to_path_buf(), source })?;
+    let text = input::read_text(path, input::MAX_TABLE);
+    let text = text.map_err(|source| IoError::Read { path: path.to_path_buf(), source })?;
+    Ok(parse_history(path, &text)?)
+}
+
+/// Reads a history from its text; `path` stands for it in messages.
+///
+/// # Errors
+/// [`TextError`] with the line of a malformed header or row.
+pub fn parse_history(path: &Path, text: &str) -> Result<History, TextError> {
     let fault = |line, kind| TextError { path: path.to_path_buf(), line, kind };
     let truncated = !text.is_empty() && !text.ends_with('\n');
-    let whole = if truncated { text.rfind('\n').map_or("", |end| &text[..end]) } else { text.as_str() };
+    let whole = if truncated { text.rfind('\n').map_or("", |end| &text[..end]) } else { text };
     let mut lines = whole.lines();
     let header = lines.next().ok_or_else(|| fault(1, TextErrorKind::NoHeader))?;
     let columns = parse_header(header).map_err(|kind| fault(1, kind))?;

@@ -9,6 +9,7 @@ pub mod cpu;
 pub mod deck;
 pub mod error;
 pub mod history;
+pub mod input;
 pub mod memory;
 pub mod summary;
 #[cfg(feature = "hdf5")]
@@ -18,10 +19,12 @@ pub mod writes;
 pub use atomic::AtomicFile;
 pub use checkpoint::{CheckpointError, CheckpointFault, CheckpointReader, CheckpointWriter};
 pub use cpu::cpu_time;
-pub use deck::{Deck, DeckError, DeckErrorKind, DeckView, Ignored, NumberFormat, parse_deck, read_deck, write_deck};
+pub use deck::{
+    Deck, DeckError, DeckErrorKind, DeckView, Ignored, NumberFormat, parse_deck, parse_deck_of, read_deck, write_deck,
+};
 pub use error::{Action, ErrorClass, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
-pub use history::{Column, History, HistoryPlace, HistoryWriter, read_history};
-pub use memory::peak_memory;
+pub use history::{Column, History, HistoryPlace, HistoryWriter, parse_history, read_history};
+pub use memory::{available_memory, peak_memory};
 pub use summary::{write_json, write_json_with};
 #[cfg(feature = "hdf5")]
 pub use vtkhdf::{

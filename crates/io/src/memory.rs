@@ -1,4 +1,4 @@
-//! Memory of the running process.
+//! Memory of the running process, and what the system has left.
 
 /// Largest resident memory of this process so far \[bytes\].
 ///
@@ -13,6 +13,29 @@ fn parse_status(status: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
+/// Memory that this process may still take \[bytes\]: what the system can give without moving anything else to disk, and its
+/// free swap space; less where a control group allows less.
+///
+/// Read from `/proc/meminfo` and `/sys/fs/cgroup` on Linux; `None` elsewhere, or where they cannot be read.
+pub fn available_memory() -> Option<u64> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    let text = |path: &str| std::fs::read_to_string(path).ok();
+    let system = parse_meminfo(&text("/proc/meminfo")?)?;
+    let number = |path: &str| text(path)?.trim().parse::<u64>().ok();
+    let group = number("/sys/fs/cgroup/memory.max").zip(number("/sys/fs/cgroup/memory.current"));
+    Some(group.map_or(system, |(most, now)| system.min(most.saturating_sub(now))))
+}
+
+fn parse_meminfo(text: &str) -> Option<u64> {
+    let kib = |key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(':'))?;
+        line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()
+    };
+    kib("MemAvailable")?.saturating_add(kib("SwapFree").unwrap_or(0)).checked_mul(1024)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -22,6 +45,20 @@ mod tests {
         assert_eq!(parse_status("Name:\tx\nVmHWM:\t    2048 kB\nVmRSS: 1 kB\n"), Some(2048 * 1024));
         assert_eq!(parse_status("Name:\tx\n"), None);
         assert_eq!(parse_status("VmHWM: many kB\n"), None);
+    }
+
+    #[test]
+    fn memory_of_a_system() {
+        let text = "MemTotal: 9 kB\nMemAvailable:    5 kB\nSwapCached: 1 kB\nSwapFree: 2 kB\n";
+        assert_eq!(parse_meminfo(text), Some(7 * 1024));
+        assert_eq!(parse_meminfo("MemAvailable: 5 kB\n"), Some(5 * 1024));
+        assert_eq!(parse_meminfo("MemTotal: 9 kB\n"), None);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn this_system_has_memory() {
+        assert!(available_memory().is_some_and(|bytes| bytes > 1_000_000));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use subrope_geometry::quality::{AngleStatistics, MeshQuality, fibre_angles, mesh
 use subrope_io::Ignored;
 
 use crate::Error;
+use crate::estimate;
 use crate::model::{ModelError, RopeModel, SliceShape};
 use crate::plan::Plan;
 use crate::scene::SceneFile;
@@ -60,9 +61,6 @@ pub struct SystemSize {
     pub symmetric: bool,
 }
 
-/// Memory of the program itself and of small things \[bytes\].
-const BASE_BYTES: f64 = 15e6;
-
 /// Builds the model of a scene and analyses its first step, without solving.
 ///
 /// # Errors
@@ -71,6 +69,7 @@ const BASE_BYTES: f64 = 15e6;
 pub fn check_scene(file: &SceneFile) -> Result<CheckReport, Error> {
     let mut model = RopeModel::new(file, None)?;
     model.check_steps()?;
+    model.check_memory()?;
     let sizing = RopeSizing::of(&file.scene).map(|sizing| sizing.summary());
     let plan = Plan::new(&file.scene, &model);
     report(model, plan, sizing).map_err(Error::Model)
@@ -80,19 +79,6 @@ fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result
     let mesh = &model.mesh.mesh;
     let state_bytes_per_point = model.state_bytes_per_point();
     let points = model.mesh.frames.len();
-    let (system, solver_bytes) = system_size(&model);
-    let per_element = points / mesh.cell_count().max(1);
-    let nodes = mesh.kind.nodes();
-    // Gradients, frame and volume of a point; positions in the matrix and connectivity of an element.
-    let point_bytes = (8 * (3 * nodes + 10) + state_bytes_per_point) as f64;
-    let element_bytes = (4 * 3 * nodes * (nodes + 1) / 2 + 4 * nodes + 72 * per_element) as f64;
-    let matrix_bytes = 8.0 * system.entries as f64;
-    let memory = BASE_BYTES
-        + points as f64 * point_bytes
-        + mesh.cell_count() as f64 * element_bytes
-        + matrix_bytes
-        + solver_bytes
-        + mesh.point_count() as f64 * 400.0;
     Ok(CheckReport {
         elements: mesh.cell_count(),
         nodes: mesh.point_count(),
@@ -100,9 +86,9 @@ fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result
         quality: mesh_quality(mesh)?,
         exact_volume: model.mesh.exact_volume(),
         angles: (points > 0).then(|| fibre_angles(mesh, &model.mesh.frames, &Vector3::z())).transpose()?,
-        system,
+        system: system_size(&model),
         state_bytes_per_point,
-        memory_mb: memory / 1e6,
+        memory_mb: estimate::memory_of(&model) / 1e6,
         plan,
         slice: model.mesh.slice,
         sizing,
@@ -110,18 +96,17 @@ fn report(model: RopeModel, plan: Plan, sizing: Option<SizingSummary>) -> Result
     })
 }
 
-fn system_size(model: &RopeModel) -> (SystemSize, f64) {
+fn system_size(model: &RopeModel) -> SystemSize {
     let system = model.analysis.system();
     let analysis = system.map(subrope_fem::System::analysis);
-    let size = SystemSize {
+    SystemSize {
         unknowns: system.map_or(0, |s| s.equations().len()),
         entries: system.map_or(0, subrope_fem::System::entries),
         factor_entries: analysis.map_or(0.0, |a| a.fill.nonzeros),
         factor_flops: analysis.map_or(0.0, |a| a.fill.flops),
         ordering: analysis.map_or_else(String::new, |a| a.ordering.name().to_string()),
         symmetric: system.is_none_or(subrope_fem::System::is_symmetric),
-    };
-    (size, analysis.map_or(0.0, |a| a.bytes as f64))
+    }
 }
 
 impl fmt::Display for CheckReport {

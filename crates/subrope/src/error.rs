@@ -130,6 +130,11 @@ impl Error {
     fn advice(&self) -> Option<String> {
         match self {
             Self::Run(error) => error.advice().map(str::to_owned),
+            Self::Model(ModelError::TooLarge { .. }) => Some(
+                "take a coarser mesh, fewer steps or cycles, `symmetry = \"helical\"` for a rope in tension or torsion, or a \
+                 machine with more memory"
+                    .to_owned(),
+            ),
             Self::Output { source, .. } => output_advice(source.kind()).map(str::to_owned),
             Self::MeshFormat { .. } if cfg!(feature = "hdf5") => Some("name it .inp (Abaqus) or .vtkhdf".to_owned()),
             Self::MeshFormat { .. } => Some("name it .inp (Abaqus); VTKHDF is not built in".to_owned()),

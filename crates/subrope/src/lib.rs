@@ -6,6 +6,7 @@
 //! - [`law`]: laws built from what a scene says;
 //! - [`model`]: a scene made ready to solve;
 //! - [`check`]: what a scene amounts to, before solving;
+//! - [`estimate`]: what it takes of memory, and what is refused;
 //! - [`plan`]: what a run will use and what it leaves out;
 //! - [`run`]: solving it, with results on disk;
 //! - [`study`]: a scene run with varied settings, errors against time and memory;
@@ -65,6 +66,7 @@ pub mod cli;
 mod contact;
 pub mod document;
 mod error;
+pub mod estimate;
 pub mod law;
 pub mod mesh_file;
 pub mod model;

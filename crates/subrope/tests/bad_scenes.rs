@@ -243,7 +243,7 @@ fn steps() {
     assert!(none.plain().contains("needs the key `step`"), "{}", none.plain());
     let empty = format!("step = []\n{}", &GOOD[..start]);
     let empty = Scene::from_toml("bad.toml", &empty).unwrap_err();
-    assert!(empty.plain().contains("`step` must hold at least one entry, not 0"), "{}", empty.plain());
+    assert!(empty.plain().contains("`step` must hold 1 to 10000 entries, not 0"), "{}", empty.plain());
     let twice = "angle = 90.0\n[[step.prescribe]]\npoint = \"END_B\"\nuz = 1.0";
     expect("angle = 90.0", twice, &["`uz` of \"END_B\" is prescribed twice", "also by step[0].bend", "bad.toml:34:6"]);
     let held = "angle = 90.0\n[[step.force]]\npoint = \"END_B\"\nfx = 1.0";

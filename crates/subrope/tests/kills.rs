@@ -9,6 +9,8 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use subrope_material::testkit::Numbers;
+
 const STRAND: &str = r#"
 title = "a strand bent with friction"
 [strand]
@@ -97,17 +99,6 @@ fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Numbers without order, the same at every call of the test.
-struct Numbers(u64);
-
-impl Numbers {
-    /// The next one between 0 and 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// What happened to some runs.
 #[derive(Debug, Default)]
 struct Told {
@@ -124,7 +115,7 @@ fn kill_until_done(scene: &Path, out: &Path, time: Duration, numbers: &mut Numbe
     for round in 1.. {
         let more: &[&str] = if restart { &["--restart", "--threads", "2"] } else { &["--threads", "1"] };
         let mut child = command(scene, out, more).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        sleep(time.mul_f64(numbers.next() * (0.7 + 0.3 * f64::from(round))));
+        sleep(time.mul_f64(numbers.unit() * (0.7 + 0.3 * f64::from(round))));
         if let Some(status) = child.try_wait().unwrap() {
             assert!(status.success(), "{status}");
             return;
@@ -150,7 +141,7 @@ fn check(text: &str, least: usize, seed: u64) -> Told {
     let time = start.elapsed();
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     let reference = content(&reference);
-    let (mut told, mut numbers) = (Told::default(), Numbers(seed));
+    let (mut told, mut numbers) = (Told::default(), Numbers::new(seed));
     let mut runs = 0;
     while told.kills < least {
         let out = folder.path().join(format!("run_{runs}"));

@@ -79,15 +79,18 @@ impl Analysis {
         let mut scalars = [0.0; 6];
         state.read_numbers("scalars", &mut scalars)?;
         let [largest_reference, stiffness_scale, last_length, time, done, length] = scalars;
-        let [steps_done, count] = array(state, "progress")?;
+        let [steps_done, count] = counts(state, "progress")?;
+        if !((0.0..=1.0).contains(&done) && length > 0.0 && length <= 1.0 && time.is_finite()) {
+            return Err(StateError::Value { name: "scalars".into() }.into());
+        }
         (self.largest_reference, self.stiffness_scale) = (largest_reference, stiffness_scale);
         (self.last_length, self.time) = (last_length, time);
         self.steps_done = steps_done as usize;
         self.progress = Progress { done, length, count: count as usize };
         let mut energies = [0.0; 11];
         state.read_numbers("totals", &mut energies)?;
-        self.totals = Totals::of_kept(energies, array(state, "total_counts")?);
-        self.phases = Phases { times: array(state, "nanoseconds")?.map(Duration::from_nanos) };
+        self.totals = Totals::of_kept(energies, counts(state, "total_counts")?);
+        self.phases = Phases { times: counts(state, "nanoseconds")?.map(Duration::from_nanos) };
         Ok(())
     }
 
@@ -131,9 +134,15 @@ fn contribution_name(index: usize) -> String {
     format!("contribution_{index}")
 }
 
-fn array<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N], StateError> {
+/// Counts beyond this were never counted, and would overflow one day.
+const MOST: u64 = 1 << 60;
+
+fn counts<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N], StateError> {
     let found = state.counts(name)?;
     StateError::expect(name, found.len(), N)?;
+    if found.iter().any(|count| *count > MOST) {
+        return Err(StateError::Value { name: name.into() });
+    }
     Ok(std::array::from_fn(|i| found[i]))
 }
 

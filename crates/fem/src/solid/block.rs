@@ -6,8 +6,10 @@ use subrope_geometry::Hexahedron;
 use subrope_material::lanes::MAX_LANES;
 use subrope_material::{Law, StateKind};
 
+use super::failure::FailedPoint;
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
 use super::kernel::{NodeVector, PointGeometry, mirror};
+use super::pack::mixed_gradient;
 use super::{ElementEnergies, SolidFields};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::state::{StateError, StateReader, StateWriter};
@@ -148,12 +150,33 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         self.points_per_element * self.law.state_len()
     }
 
-    pub(super) fn failure(&self, element: usize, failure: ElementFailure) -> FemError {
-        let element = self.labels[element];
-        match failure {
-            ElementFailure::Law(point, source) => FemError::Law { element, point, source },
-            ElementFailure::MeanVolume(ratio) => FemError::MeanVolume { element, ratio },
-        }
+    /// An element that failed, with what it was asked from the displacements `committed`.
+    pub(super) fn failure(
+        &self,
+        element: usize,
+        failure: ElementFailure,
+        input: &ElementInput<'_, N, L>,
+        committed: &[f64],
+    ) -> FemError {
+        let label = self.labels[element];
+        let (point, source, gradient, mean_elongation) = match failure {
+            ElementFailure::Law { point, source, gradient, mean_elongation } => {
+                (point, source, gradient, mean_elongation)
+            }
+            ElementFailure::MeanVolume(ratio) => return FemError::MeanVolume { element: label, ratio },
+        };
+        let geometry = &input.points[point];
+        let before = mixed_gradient(&self.gather(element, committed), &geometry.gradient);
+        let asked = FailedPoint {
+            gradient: Matrix3::from_fn(|i, j| gradient[i][j]),
+            mean_elongation,
+            committed_gradient: geometry.frame.tr_mul(&before),
+            frame: geometry.frame,
+            state: self.state(element, point).to_vec(),
+            time_increment: input.time_increment,
+            temperature: input.temperature,
+        };
+        FemError::Law { element: label, point, source, asked: Box::new(asked) }
     }
 
     /// What an element is evaluated from.
@@ -326,7 +349,8 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
             self.batch(first, configuration, request, Work { trial, results });
             for (i, result) in work.results[..count].iter_mut().enumerate() {
                 if let Some(failure) = result.failure.take() {
-                    return Err(self.failure(first + i, failure));
+                    let input = self.input(first + i, configuration, request);
+                    return Err(self.failure(first + i, failure, &input, configuration.committed));
                 }
                 energies += result.energies;
                 kept[first + i] = ElementEnergies::of(&result.energies);

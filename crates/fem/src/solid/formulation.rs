@@ -32,9 +32,37 @@ pub struct ElementInput<'a, const N: usize, L> {
 #[derive(Clone, Debug)]
 pub enum ElementFailure {
     /// The law failed at a point.
-    Law(usize, LawError),
+    Law {
+        /// Integration point.
+        point: usize,
+        /// Why.
+        source: LawError,
+        /// Displacement gradient that it was asked at \[-\].
+        gradient: [[f64; 3]; 3],
+        /// Mean elongation that it was asked at \[-\].
+        mean_elongation: Option<f64>,
+    },
     /// The mean volume ratio is not positive.
     MeanVolume(f64),
+}
+
+impl ElementFailure {
+    /// At a lane of a pack of which the first point has a number.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn in_lane<S: Simd>(
+        (first, failure): (usize, LaneFailure),
+        gradient: &[[Wide<S>; 3]; 3],
+        mean_elongation: Option<Wide<S>>,
+    ) -> Self {
+        let LaneFailure { lane, source } = failure;
+        Self::Law {
+            point: first + lane,
+            source,
+            gradient: gradient.map(|row| row.map(|entry| entry.to_array()[lane])),
+            mean_elongation: mean_elongation.map(|mean| mean.to_array()[lane]),
+        }
+    }
 }
 
 /// Forces, stiffness and energies of one element.
@@ -148,9 +176,22 @@ impl<const N: usize, L: Law> ElementInput<'_, N, L> {
             Request::Tangent => LawRequest::Tangent,
         };
         let (old, new) = (&self.old[states.clone()], &mut new[states]);
-        let call = LawCall { law: self.law, input: &input, old, new, request, response };
-        simd.vectorize(call).map_err(|LaneFailure { lane, source }| ElementFailure::Law(first + lane, source))
+        ask(simd, self.law, (&input, old), new, request, response)
+            .map_err(|failure| ElementFailure::in_lane((first, failure), &gradient, mean_elongation))
     }
+}
+
+/// Calls a law in the vectors of an instruction set.
+#[inline(always)]
+pub(super) fn ask<L: Law, S: Simd>(
+    simd: S,
+    law: &L,
+    (input, old): (&LaneInput<Wide<S>>, &[f64]),
+    new: &mut [f64],
+    request: LawRequest,
+    response: &mut LaneResponse<Wide<S>>,
+) -> Result<(), LaneFailure> {
+    simd.vectorize(LawCall { law, input, old, new, request, response })
 }
 
 /// What a law is asked at a pack.

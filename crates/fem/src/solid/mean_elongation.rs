@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 use subrope_material::lanes::Lanes;
-use subrope_material::{LaneResponse, Law, LawError};
+use subrope_material::{LaneFailure, LaneResponse, Law, LawError};
 
 use super::averaged::{self, Averaging, MeanTerms};
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
@@ -52,7 +52,8 @@ impl Averaging for MeanElongation {
             let growth = fibre_growth(pack);
             *stretch = growth + 1.0;
             if let Some((lane, jacobian)) = stretch.first_not_positive() {
-                return Err(ElementFailure::Law(number * lanes + lane, LawError::Inverted { jacobian }));
+                let failure = LaneFailure { lane, source: LawError::Inverted { jacobian } };
+                return Err(ElementFailure::in_lane((number * lanes, failure), &pack.gradient, None));
             }
             pack.integrate(growth.ln_1p() * 0.5, &mut mean);
         }

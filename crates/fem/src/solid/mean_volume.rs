@@ -5,7 +5,7 @@
 use pulp::Simd;
 use subrope_material::lanes::{Lanes, volume_growth};
 use subrope_material::mandel::{PAIRS, WEIGHTS};
-use subrope_material::{LaneResponse, Law, LawError};
+use subrope_material::{LaneFailure, LaneResponse, Law, LawError};
 
 use super::averaged::{self, Averaging, MeanTerms};
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
@@ -68,7 +68,8 @@ impl Averaging for MeanVolume {
             half.dilation = volume_growth(&pack.gradient);
             half.right = right_cauchy_green(&pack.gradient);
             if let Some((lane, jacobian)) = (half.dilation + 1.0).first_not_positive() {
-                return Err(ElementFailure::Law(number * lanes + lane, LawError::Inverted { jacobian }));
+                let failure = LaneFailure { lane, source: LawError::Inverted { jacobian } };
+                return Err(ElementFailure::in_lane((number * lanes, failure), &pack.gradient, None));
             }
             pack.integrate(half.dilation, &mut mean);
         }

@@ -2,6 +2,7 @@
 
 mod averaged;
 mod block;
+mod failure;
 mod formulation;
 mod kernel;
 mod mean_elongation;
@@ -11,6 +12,7 @@ mod pack;
 mod wide;
 
 pub use block::{SolidBlock, SolidMesh};
+pub use failure::FailedPoint;
 pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full};
 pub use kernel::{NodeMatrix, NodeVector, PointGeometry, PointProducts};
 pub use mean_elongation::MeanElongation;

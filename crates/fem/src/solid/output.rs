@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
 use subrope_material::lanes::MAX_LANES;
-use subrope_material::{Law, StateVariable, StrainModes, mandel};
+use subrope_material::{Law, LawError, StateVariable, StrainModes, mandel};
 
 use super::SolidBlock;
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
@@ -145,7 +145,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
         let mut result = Box::new(ElementResult::zero(points.len()));
         let mut new = vec![0.0; points.len() * n];
         let evaluation = Evaluation { input: &input, new: &mut new, out: &mut result, formulation: PhantomData::<F> };
-        pulp::Arch::new().dispatch(evaluation).map_err(|f| self.failure(element, f))?;
+        pulp::Arch::new().dispatch(evaluation).map_err(|f| self.failure(element, f, &input, displacement))?;
         for (q, point) in points.iter().enumerate() {
             let hr = input.gradient(q);
             let fr = point.frame + hr;
@@ -156,14 +156,21 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
                 frame: point.frame,
                 deformation_gradient: fr * point.frame.transpose(),
                 cauchy_stress: fr * stress * fr.transpose() / jacobian,
-                modes: StrainModes::from_displacement_gradient(&point.frame.tr_mul(&hr))
-                    .map_err(|e| self.failure(element, ElementFailure::Law(q, e)))?,
+                modes: StrainModes::from_displacement_gradient(&point.frame.tr_mul(&hr)).map_err(|source| {
+                    self.failure(element, no_modes(q, source, &point.frame.tr_mul(&hr)), &input, displacement)
+                })?,
                 state: self.state(element, q),
             };
             visit(q, &sample);
         }
         Ok(())
     }
+}
+
+/// A point whose deformation has no strain modes.
+fn no_modes(point: usize, source: LawError, gradient: &Matrix3<f64>) -> ElementFailure {
+    let gradient = std::array::from_fn(|i| std::array::from_fn(|j| gradient[(i, j)]));
+    ElementFailure::Law { point, source, gradient, mean_elongation: None }
 }
 
 /// One element outside of an assembly.

@@ -12,8 +12,30 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct CheckpointReader {
     path: PathBuf,
-    file: File,
+    source: Source,
     sections: BTreeMap<String, Section>,
+}
+
+/// Where the bytes are.
+#[derive(Debug)]
+enum Source {
+    File(File),
+    Memory(Vec<u8>),
+}
+
+/// Some of the bytes.
+enum Content<'a> {
+    File(io::Take<&'a File>),
+    Memory(&'a [u8]),
+}
+
+impl Read for Content<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(into),
+            Self::Memory(bytes) => bytes.read(into),
+        }
+    }
 }
 
 /// Where the content of a section is.
@@ -32,19 +54,25 @@ impl CheckpointReader {
     /// or damaged.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         let unreadable = |source| IoError::Read { path: path.to_path_buf(), source };
+        let about = std::fs::metadata(path).map_err(unreadable)?;
+        if !about.is_file() {
+            // Opening a pipe could block.
+            return Err(unreadable(io::Error::new(ErrorKind::InvalidInput, "it is not a regular file")));
+        }
         let file = File::open(path).map_err(unreadable)?;
-        let length = file.metadata().map_err(unreadable)?.len();
-        let mut scan = Scan {
-            path,
-            source: BufReader::with_capacity(BLOCK, &file),
-            at: 0,
-            length,
-            whole: Hasher::new(),
-            section: Hasher::new(),
-            name: String::new(),
-        };
-        let sections = scan.sections()?;
-        Ok(Self { path: path.to_path_buf(), file, sections })
+        let mut reader = BufReader::with_capacity(BLOCK, &file);
+        let sections = Scan::new(path, &mut reader, about.len()).sections()?;
+        Ok(Self { path: path.to_path_buf(), source: Source::File(file), sections })
+    }
+
+    /// A checkpoint from its bytes; `path` stands for it in messages.
+    ///
+    /// # Errors
+    /// [`IoError::Checkpoint`], as [`open`](Self::open).
+    pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, IoError> {
+        let length = bytes.len() as u64;
+        let sections = Scan::new(path, &mut bytes.as_slice(), length).sections()?;
+        Ok(Self { path: path.to_path_buf(), source: Source::Memory(bytes), sections })
     }
 
     /// The file.
@@ -117,10 +145,18 @@ impl CheckpointReader {
         section.ok_or_else(|| self.fault(name, 0, Fault::Missing))
     }
 
-    fn content(&self, section: Section) -> Result<io::Take<&File>, IoError> {
-        let mut file = &self.file;
-        file.seek(SeekFrom::Start(section.begin)).map_err(|source| self.unreadable(source))?;
-        Ok(file.take(section.length))
+    fn content(&self, section: Section) -> Result<Content<'_>, IoError> {
+        match &self.source {
+            Source::File(file) => {
+                let mut file: &File = file;
+                file.seek(SeekFrom::Start(section.begin)).map_err(|source| self.unreadable(source))?;
+                Ok(Content::File(file.take(section.length)))
+            }
+            Source::Memory(bytes) => {
+                let (begin, end) = (section.begin as usize, (section.begin + section.length) as usize);
+                Ok(Content::Memory(bytes.get(begin..end).unwrap_or_default()))
+            }
+        }
     }
 
     fn words(&self, section: Section, mut each: impl FnMut([u8; 8])) -> Result<(), IoError> {
@@ -145,7 +181,7 @@ impl CheckpointReader {
 /// One pass through the file.
 struct Scan<'a> {
     path: &'a Path,
-    source: BufReader<&'a File>,
+    source: &'a mut dyn Read,
     at: u64,
     length: u64,
     whole: Hasher,
@@ -154,7 +190,12 @@ struct Scan<'a> {
     name: String,
 }
 
-impl Scan<'_> {
+impl<'a> Scan<'a> {
+    fn new(path: &'a Path, source: &'a mut dyn Read, length: u64) -> Self {
+        let (whole, section) = (Hasher::new(), Hasher::new());
+        Self { path, source, at: 0, length, whole, section, name: String::new() }
+    }
+
     fn sections(&mut self) -> Result<BTreeMap<String, Section>, IoError> {
         if self.take::<8>().ok() != Some(MAGIC) {
             return Err(self.fault(Fault::Magic));
@@ -218,7 +259,7 @@ impl Scan<'_> {
     }
 
     fn skip(&mut self, length: u64) -> Result<(), IoError> {
-        let (mut left, mut block) = (length, vec![0; BLOCK]);
+        let (mut left, mut block) = (length, vec![0; length.min(BLOCK as u64) as usize]);
         while left > 0 {
             let part = left.min(BLOCK as u64) as usize;
             self.fill(&mut block[..part])?;

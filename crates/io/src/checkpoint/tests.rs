@@ -25,6 +25,21 @@ fn fault(path: &Path) -> CheckpointFault {
 }
 
 #[test]
+fn bytes_in_memory_read_as_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c");
+    let mut writer = CheckpointWriter::create(&path, &Writes::default()).unwrap();
+    writer.numbers("a", 2, &mut [1.5, -0.0].into_iter()).unwrap();
+    writer.bytes("text", 2, &mut "xy".as_bytes()).unwrap();
+    writer.commit().unwrap();
+    let reader = CheckpointReader::of_bytes(&path, std::fs::read(&path).unwrap()).unwrap();
+    assert_eq!(reader.numbers("a").unwrap(), [1.5, -0.0]);
+    assert_eq!(reader.text("text").unwrap(), "xy");
+    let error = CheckpointReader::open(folder.path()).unwrap_err();
+    assert!(matches!(error, IoError::Read { .. }), "{error}");
+}
+
+#[test]
 fn everything_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");

@@ -30,7 +30,7 @@ pub(super) fn resolve(raw: &Raw, files: &[PathBuf]) -> Result<Deck, Fault> {
     let elements = Resolved::elements(raw, &mut budget)?;
     let nodes = Resolved::nodes(raw, &elements, &written, kind.nodes(), &mut budget)?;
     let surfaces = sets::surfaces(raw, &elements, &mut budget)?;
-    let sections = Sections::resolve(raw, &elements)?;
+    let sections = Sections::resolve(raw, &elements, &mut budget)?;
     let mut dropped_sets = Vec::new();
     let node_sets = nodes.named(&raw.node_sets, |node| compaction.new_index(node), &mut dropped_sets);
     let element_sets = elements.named(&raw.element_sets, Some, &mut dropped_sets);

@@ -2,8 +2,9 @@
 
 use super::error::DeckErrorKind;
 use super::keyword::Keyword;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Cursor, Read};
+use std::io::{BufRead, BufReader, Cursor, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Longest line, or keyword with its continuation lines \[bytes\].
@@ -61,27 +62,64 @@ struct Open {
     canonical: Option<PathBuf>,
 }
 
+/// Where files are.
+enum Files {
+    /// On the disk.
+    Disk,
+    /// Texts by their names.
+    Texts(BTreeMap<PathBuf, Vec<u8>>),
+}
+
+impl Files {
+    /// Opens a file; its resolved path, by which a cycle is seen, comes first.
+    fn open(&self, path: &Path) -> Result<(PathBuf, Box<dyn BufRead>), DeckErrorKind> {
+        let unreadable = |source| DeckErrorKind::Unreadable { path: path.to_path_buf(), source };
+        match self {
+            Self::Texts(texts) => {
+                let bytes = texts.get(path).ok_or_else(|| unreadable(ErrorKind::NotFound.into()))?;
+                Ok((path.to_path_buf(), Box::new(Cursor::new(bytes.clone()))))
+            }
+            Self::Disk => {
+                let canonical = fs::canonicalize(path).map_err(unreadable)?;
+                // A device or a pipe could deliver without end, and opening a pipe could block.
+                if !fs::metadata(path).map_err(unreadable)?.is_file() {
+                    return Err(DeckErrorKind::NotAFile { path: path.to_path_buf() });
+                }
+                Ok((canonical, Box::new(BufReader::new(File::open(path).map_err(unreadable)?))))
+            }
+        }
+    }
+}
+
 /// Reads a deck line by line.
 pub(super) struct Source {
     /// Every file opened so far; an [`At`] refers to them.
     pub files: Vec<PathBuf>,
     stack: Vec<Open>,
     ahead: Option<(At, String)>,
+    disk: Files,
 }
 
 impl Source {
     /// Starts with a file.
     pub fn open(path: &Path) -> Result<Self, DeckErrorKind> {
-        let mut source = Self { files: Vec::new(), stack: Vec::new(), ahead: None };
+        let mut source = Self { files: Vec::new(), stack: Vec::new(), ahead: None, disk: Files::Disk };
         source.push_file(path.to_path_buf())?;
         Ok(source)
+    }
+
+    /// Starts with the text of a name; included files are among the texts.
+    pub fn texts(name: &Path, texts: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        let bytes = texts.get(name).cloned().unwrap_or_default();
+        let open = Open { file: 0, line: 0, reader: Box::new(Cursor::new(bytes)), canonical: Some(name.to_path_buf()) };
+        Self { files: vec![name.to_path_buf()], stack: vec![open], ahead: None, disk: Files::Texts(texts) }
     }
 
     /// Starts with a text; `name` stands for it in messages, and its folder is where included files are looked for.
     pub fn text(name: &Path, text: &str) -> Self {
         let reader = Box::new(Cursor::new(text.as_bytes().to_vec()));
         let open = Open { file: 0, line: 0, reader, canonical: fs::canonicalize(name).ok() };
-        Self { files: vec![name.to_path_buf()], stack: vec![open], ahead: None }
+        Self { files: vec![name.to_path_buf()], stack: vec![open], ahead: None, disk: Files::Disk }
     }
 
     /// The next line with its place; `None` at the end of the deck.
@@ -171,16 +209,10 @@ impl Source {
         if self.stack.len() >= MAX_DEPTH {
             return Err(DeckErrorKind::IncludeDepth { limit: MAX_DEPTH });
         }
-        let unreadable = |source| DeckErrorKind::Unreadable { path: path.clone(), source };
-        let canonical = fs::canonicalize(&path).map_err(unreadable)?;
+        let (canonical, reader) = self.disk.open(&path)?;
         if self.stack.iter().any(|open| open.canonical.as_ref() == Some(&canonical)) {
             return Err(DeckErrorKind::IncludeCycle { path });
         }
-        // A device or a pipe could deliver without end, and opening a pipe could block.
-        if !fs::metadata(&path).map_err(unreadable)?.is_file() {
-            return Err(DeckErrorKind::NotAFile { path });
-        }
-        let reader = Box::new(BufReader::new(File::open(&path).map_err(unreadable)?));
         self.stack.push(Open { file: self.files.len() as u32, line: 0, reader, canonical: Some(canonical) });
         self.files.push(path);
         Ok(())

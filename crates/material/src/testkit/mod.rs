@@ -8,6 +8,7 @@ mod edge;
 mod failure;
 mod invariance;
 mod path;
+mod random;
 mod robustness;
 mod stencil;
 mod walk;
@@ -19,6 +20,7 @@ pub use edge::yield_edge;
 pub use failure::{Entry, TestkitFailure};
 pub use invariance::{objectivity, rotated_frame, transverse_isotropy};
 pub use path::Path;
+pub use random::Numbers;
 pub use robustness::{dissipation, extremes, idempotence, rest, symmetry};
 
 /// Runs the whole battery: at rest, extremes, and on every path gradient, tangent, symmetry, idempotence, dissipation,

@@ -71,7 +71,8 @@ pub(super) enum Command {
         #[arg(long)]
         resume: bool,
     },
-    /// Drive a law along the paths of a point file (.json or .toml)
+    /// Drive a law along the paths of a point file (.json or .toml), or ask it again at the point where a run failed
+    /// (failed_point.toml)
     Point {
         /// The point file: .json (every step) or .toml (a few targets, the steps between them are filled in)
         file: PathBuf,

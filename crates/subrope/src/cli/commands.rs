@@ -8,6 +8,7 @@ use super::study::StudyCommand;
 use super::terminal::Terminal;
 use super::{interrupt, study, templates};
 use crate::check::check_scene;
+use crate::point::PointFile;
 use crate::run::{RunOptions, RunOutcome};
 use crate::scene::{Scene, SceneFile};
 use crate::{Error, mesh_file, point};
@@ -53,7 +54,7 @@ fn summary(file: &SceneFile) -> String {
         }
         (_, Some(rope), _) => {
             let strands = rope.strand_count();
-            format!("{} hexahedra in {strands} strands", strands * rope.mesh.cell_count())
+            format!("{} hexahedra in {strands} strands", strands.saturating_mul(rope.mesh.cell_count()))
         }
         (.., Some(deck)) => format!("deck {}", deck.display()),
         _ => "none".to_owned(),
@@ -94,7 +95,14 @@ fn closing(outcome: &RunOutcome) -> String {
 }
 
 fn run_point(path: &Path, output: Option<&Path>, differences: bool) -> Result<(), Error> {
-    let computed = point::compute(&path.display().to_string(), &point::load(path)?, differences)?;
+    let paths = match point::read(path)? {
+        PointFile::Paths(paths) => paths,
+        PointFile::Failed(failed) => {
+            let answer = failed.replay()?;
+            return output.map_or_else(|| print(answer.as_bytes()), |output| write(output, answer.as_bytes()));
+        }
+    };
+    let computed = point::compute(&path.display().to_string(), &paths, differences)?;
     let ends_with = |p: &Path, ending: &str| p.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let table = output.map_or_else(|| ends_with(path, "toml"), |o| ends_with(o, "csv"));
     let text = if table {

@@ -22,13 +22,19 @@ pub use suggest::nearest;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 
+/// Problems that are looked for: each of them costs a walk through the text, and nobody reads more.
+pub(crate) const MOST_PROBLEMS: usize = 200;
+
 /// Reads a type out of TOML text; the document comes back as well, to locate later findings.
 ///
 /// # Errors
 /// [`InvalidDocument`] with all syntax errors, or all unknown keys, wrong types and values out of bounds.
-pub fn read<T: DeserializeOwned + JsonSchema>(name: &str, text: &str) -> Result<(T, Document), InvalidDocument> {
+pub fn read<T: DeserializeOwned + JsonSchema + 'static>(
+    name: &str,
+    text: &str,
+) -> Result<(T, Document), InvalidDocument> {
     let document = Document::parse(name, text)?;
-    document.reject(shape::check(&document, &schema_of::<T>()))?;
+    document.reject(shape::check(&document, &schema::cached::<T>()))?;
     match toml::from_str(text) {
         Ok(value) => Ok((value, document)),
         Err(error) => {

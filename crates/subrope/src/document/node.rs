@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{InvalidDocument, Location, Problem, ProblemKind, Segment};
+use super::{InvalidDocument, Location, MOST_PROBLEMS, Problem, ProblemKind, Segment};
 
 /// A value of a document.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,12 +76,14 @@ impl Document {
     /// [`InvalidDocument`] with every syntax error, duplicate key and number that no 64 bits hold.
     pub fn parse(name: &str, text: &str) -> Result<Self, InvalidDocument> {
         let (table, errors) = DeTable::parse_recoverable(text);
-        let mut faults: Vec<_> = errors.iter().map(|e| (e.span(), e.message().to_owned())).collect();
+        let mut faults: Vec<_> =
+            errors.iter().take(MOST_PROBLEMS).map(|e| (e.span(), e.message().to_owned())).collect();
         let span = 0..text.len();
         let value = table_value(table.get_ref(), &mut faults);
         let document = Self { name: name.into(), text: text.into(), root: Node { span, value } };
         let problems = faults
             .into_iter()
+            .take(MOST_PROBLEMS)
             .map(|(span, message)| document.problem_at(span.unwrap_or(0..0), ProblemKind::Syntax { message }));
         document.reject(problems.collect())?;
         Ok(document)

@@ -11,7 +11,7 @@ use serde_json::Value as Json;
 use super::keywords::{
     describe, is_null, join_or, length, number, property_names, tag_of, tag_value, type_fits, words,
 };
-use super::{Document, Location, Node, Problem, ProblemKind, Segment, Value};
+use super::{Document, Location, MOST_PROBLEMS, Node, Problem, ProblemKind, Segment, Value};
 
 /// All problems of a document under a schema.
 pub(super) fn check(document: &Document, schema: &Json) -> Vec<Problem> {
@@ -52,6 +52,9 @@ impl Place<'_> {
 
 impl<'a> Shape<'a> {
     fn report(&mut self, span: Range<usize>, kind: ProblemKind, about: &str) {
+        if self.problems.len() >= MOST_PROBLEMS {
+            return;
+        }
         let problem = self.document.problem_at(span, kind);
         // Documentation is wrapped, advice is one line.
         let about = about.replace('\n', " ");

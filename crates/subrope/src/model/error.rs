@@ -13,6 +13,16 @@ use crate::contact::ContactError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
+    /// More than the memory of the machine holds.
+    #[error("{what} need at least {needed_gb:.3e} GB of memory, and {available_gb:.1} GB are left")]
+    TooLarge {
+        /// What.
+        what: String,
+        /// Estimate of what it needs \[GB\].
+        needed_gb: f64,
+        /// What there is \[GB\].
+        available_gb: f64,
+    },
     /// The mesh cannot be made or is not sound.
     #[error("mesh: {0}")]
     Geometry(#[from] GeometryError),

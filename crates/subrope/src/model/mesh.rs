@@ -42,6 +42,7 @@ impl MeshModel {
     /// # Errors
     /// [`ModelError::Geometry`], [`ModelError::Deck`], [`ModelError::MissingFibres`], [`ModelError::WrongElement`].
     pub fn new(scene: &Scene, deck: Option<&std::path::Path>) -> Result<(Self, Vec<Ignored>), ModelError> {
+        crate::estimate::refuse_scene(scene)?;
         let kind = cell_kind(scene.element.formulation);
         let (model, ignored) = match (&scene.strand, &scene.rope, &scene.deck, deck) {
             (Some(strand), ..) => (Self::generate(strand, kind)?, Vec::new()),
@@ -50,6 +51,10 @@ impl MeshModel {
             (None, None, Some(entry), Some(path)) => Self::read(entry, path, kind)?,
             _ => return Err(ModelError::UnknownSet { kind: "mesh", name: String::new(), available: Vec::new() }),
         };
+        if scene.deck.is_some() {
+            let (elements, nodes) = (model.mesh.cell_count(), model.mesh.point_count());
+            crate::estimate::refuse_mesh(scene.element.formulation, elements, nodes)?;
+        }
         let found = model.mesh.kind.nodes();
         if model.mesh.kind != kind {
             let formulation = scene.element.formulation.word();
@@ -96,6 +101,7 @@ impl MeshModel {
     }
 
     fn read(entry: &Deck, path: &std::path::Path, kind: CellKind) -> Result<(Self, Vec<Ignored>), ModelError> {
+        crate::estimate::refuse_deck(std::fs::metadata(path).map_or(0, |about| about.len()))?;
         let deck = read_deck(path)?;
         let mut mesh = deck.mesh;
         if mesh.kind.nodes() == kind.nodes() {

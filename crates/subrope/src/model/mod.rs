@@ -24,9 +24,9 @@ use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError, Repeated};
 use subrope_io::Ignored;
 
-use crate::contact;
 use crate::run::RunError;
 use crate::scene::{End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
+use crate::{contact, estimate};
 
 /// A scene made ready to solve.
 pub struct RopeModel {
@@ -141,12 +141,22 @@ impl RopeModel {
     /// # Errors
     /// [`RunError::Solver`] with the rigid motions, or what the analysis answers.
     pub fn check_steps(&mut self) -> Result<(), RunError> {
-        let refused = |cause| RunError::Solver { cause: Box::new(cause), kept: None };
+        let refused = |cause| RunError::Solver { cause: Box::new(cause), kept: None, point: None };
         self.steps.iter().try_for_each(|step| self.analysis.check_held(step)).map_err(refused)?;
         match self.steps.first() {
             Some(step) => self.analysis.analyse(step).map_err(refused),
             None => Ok(()),
         }
+    }
+
+    /// Refuses a model that, as analysed for its first step, takes more memory than there is.
+    ///
+    /// # Errors
+    /// [`ModelError::TooLarge`].
+    pub fn check_memory(&self) -> Result<(), ModelError> {
+        let mesh = &self.mesh.mesh;
+        let what = || format!("{} elements with {} nodes and their factor", mesh.cell_count(), mesh.point_count());
+        estimate::refuse_beyond(what, estimate::memory_of(self), estimate::limit())
     }
 
     /// Bytes of state per integration point, committed and trial; 0 for an elastic law.

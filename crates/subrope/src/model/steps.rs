@@ -6,7 +6,11 @@ use subrope_fem::analysis::{Increments, LoadBefore, Prescription, Step, StepLoad
 use subrope_fem::kinematics::{Kinematics, NodeRule};
 
 use super::{MeshModel, ModelError, loads};
+use crate::estimate;
 use crate::scene::{Incrementation, Motion, MotionPath, MotionTarget, Program, ProgramStep, Scene};
+
+/// Memory of a prescribed coordinate or a load in one step \[bytes\].
+const PRESCRIPTION: f64 = 100.0;
 
 /// Steps that the kernel runs.
 pub(super) fn steps(
@@ -15,7 +19,16 @@ pub(super) fn steps(
     mesh: &MeshModel,
     kinematics: &Kinematics,
 ) -> Result<Vec<Step>, ModelError> {
-    program.steps.iter().map(|step| one(scene, step, mesh, kinematics)).collect()
+    let (limit, mut bytes) = (estimate::limit(), 0.0);
+    let mut steps = Vec::with_capacity(program.steps.len());
+    for step in &program.steps {
+        let step = one(scene, step, mesh, kinematics)?;
+        // Constraints prescribe every node of their sets, in every half cycle.
+        bytes += PRESCRIPTION * (step.prescriptions.len() + step.loads.len()) as f64;
+        estimate::refuse_beyond(|| format!("{} steps", program.steps.len()), bytes, limit)?;
+        steps.push(step);
+    }
+    Ok(steps)
 }
 
 fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinematics) -> Result<Step, ModelError> {

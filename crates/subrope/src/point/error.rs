@@ -42,6 +42,23 @@ pub enum PointError {
         /// What is wrong.
         fault: EntryFault,
     },
+    /// A point at which a run failed, where paths are asked for.
+    #[error("{} holds a point at which a run failed, and no paths", path.display())]
+    NoPaths {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The law gives no answer at a point where a run failed.
+    #[error("element {element}, integration point {point}: {source}")]
+    #[diagnostic(help("it is the failure of the run: change the parameters in [law] to see what helps"))]
+    Failed {
+        /// Label of the element.
+        element: u64,
+        /// Integration point, from 0.
+        point: usize,
+        /// Why.
+        source: LawError,
+    },
     /// The law gives no answer.
     #[error("{place}: the law gives no answer")]
     Law {

@@ -153,7 +153,10 @@ pub struct StepRecord {
     pub other: Map<String, Value>,
 }
 
-/// Reads the JSON form. Errors name the path and the step, line and column.
-pub(super) fn parse(file: &str, text: &str) -> Result<PathFile, PointError> {
+/// Reads the JSON form; `file` is what errors call it.
+///
+/// # Errors
+/// [`PointError::Json`] with the path and the step, line and column.
+pub fn parse(file: &str, text: &str) -> Result<PathFile, PointError> {
     serde_json::from_str(text).map_err(|source| PointError::Json { file: file.to_owned(), source })
 }

@@ -8,8 +8,8 @@ use subrope_material::StrainModes;
 use super::record::{PathFile, PathRecord, StepRecord, Tensor, text};
 use super::{Params, Place, PointError, displacement_gradient_of, parameters};
 use crate::document::{self, Document, Location, Problem, ProblemKind};
-use crate::law;
 use crate::scene::{Law, check_law};
+use crate::{estimate, law};
 
 /// A path of one material point, for people.
 ///
@@ -78,6 +78,9 @@ pub struct Target {
     pub steps: usize,
 }
 
+/// Memory of a step with everything computed, and of its line of text \[bytes\].
+const STEP_BYTES: f64 = (size_of::<StepRecord>() + 2000) as f64;
+
 /// Where a path stands: modes as long as targets are given by modes.
 #[derive(Clone, Copy, Debug)]
 enum Standing {
@@ -115,6 +118,15 @@ impl PathScene {
         if self.fibre.is_some() && self.frame.is_some() {
             report(top.at("frame"), "`fibre` and `frame` exclude each other", "give one of the two");
         }
+        let (steps, most) = (self.steps(), estimate::limit() / STEP_BYTES);
+        if steps > most {
+            let cause = format!(
+                "{steps} steps take {:.3e} GB, and {:.1} GB of memory are left",
+                steps * STEP_BYTES / 1e9,
+                most * STEP_BYTES / 1e9
+            );
+            report(top.at("cycles"), &cause, "fewer `cycles`, or fewer `steps` to the targets");
+        }
         for (index, target) in self.path.iter().enumerate() {
             let given = [target.H.is_some(), target.F.is_some(), target.modes.is_some()];
             if given.iter().filter(|g| **g).count() != 1 {
@@ -122,6 +134,12 @@ impl PathScene {
             }
         }
         problems
+    }
+
+    /// Number of single steps, as a real number: the product may be beyond what integers hold.
+    #[must_use]
+    pub fn steps(&self) -> f64 {
+        self.cycles as f64 * self.path.iter().map(|target| target.steps as f64).sum::<f64>()
     }
 
     /// The same as single steps.

@@ -1,7 +1,7 @@
 //! Why a run ended early.
 
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use subrope_fem::FemError;
 use subrope_io::IoError;
@@ -14,12 +14,14 @@ use crate::error::ExitCode;
 #[non_exhaustive]
 pub enum RunError {
     /// No equilibrium, or a model that cannot be solved.
-    #[error("{cause}")]
+    #[error("{cause}{}", replayed(point.as_deref()))]
     Solver {
         /// What the kernel says.
         cause: Box<FemError>,
         /// Folder with the results up to the last converged increment, if there is one.
         kept: Option<PathBuf>,
+        /// File with the point at which the law had no answer, if that is the cause.
+        point: Option<PathBuf>,
     },
     /// The user stopped the run; results are complete up to the last converged increment.
     #[error("interrupted after increment {increments}; results up to there are in {}", folder.display())]
@@ -109,6 +111,11 @@ impl RunError {
             Self::Folder { source, .. } | Self::Replace { source, .. } => output_advice(source.kind()),
         }
     }
+}
+
+/// Where a failed point was written to.
+fn replayed(point: Option<&Path>) -> String {
+    point.map_or_else(String::new, |path| format!("; the point is in {0}: subrope point {0}", path.display()))
 }
 
 fn advice_on(cause: &IoError) -> Option<&'static str> {

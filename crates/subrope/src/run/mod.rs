@@ -5,6 +5,7 @@ mod clock;
 mod columns;
 mod cycles;
 mod error;
+mod failed_point;
 #[cfg(feature = "hdf5")]
 mod field_file;
 #[cfg(feature = "hdf5")]
@@ -93,6 +94,7 @@ pub fn run_scene(path: &Path, options: RunOptions<'_>, observer: &mut dyn Observ
     let clock = Clock::start();
     // Everything that can be refused is refused before files of an earlier run are replaced.
     model.check_steps()?;
+    model.check_memory()?;
     observer.on_plan(&Plan::new(&file.scene, &model));
     if folder.join(checkpoint::FILE).exists() {
         observer.on_warning(&format!("the run that stopped in {} is replaced", folder.display()));

@@ -108,6 +108,7 @@ pub fn restart_scene(
     let mut model = ready(RopeModel::new(&file, options.threads)?, observer);
     let clock = Clock::start();
     found.restore(&mut model.analysis).map_err(RunError::from)?;
+    model.check_memory()?;
     observer.on_plan(&Plan::new(&file.scene, &model));
     let totals = model.analysis.totals();
     observer.on_restart(totals.increments, model.analysis.time());

@@ -13,7 +13,7 @@ use super::checkpoint::{self, Checkpoints, Found};
 use super::clock::{Clock, Reading};
 use super::output::{Opening, Output, Scenery};
 use super::summary::{Elapsed, Status, Summary};
-use super::{RestartError, RunError, RunFiles, RunOptions, RunOutcome, SUMMARY, cycles, line_load};
+use super::{RestartError, RunError, RunFiles, RunOptions, RunOutcome, SUMMARY, cycles, failed_point, line_load};
 use crate::Error;
 use crate::model::{CycleStep, RopeModel};
 use crate::progress::{self, Finish, Observer, Outcome, StepStart};
@@ -106,6 +106,7 @@ impl<'a> Session<'a> {
         checkpoint::remove_parts(folder, &files.summary);
         // What an earlier run wrote at its end must not stand beside new results.
         remove(&files.summary)?;
+        remove(&folder.join(failed_point::FILE))?;
         #[cfg(feature = "hdf5")]
         remove(&folder.join(last_trial::FILE))?;
         let output = Output::open(file, model, &files, Opening { writes, from });
@@ -173,8 +174,12 @@ impl<'a> Session<'a> {
                 if let Err(error) = last_trial::write(&files.folder, &model.mesh, &model.analysis) {
                     observer.on_warning(&format!("no {}: {error}", last_trial::FILE));
                 }
+                let point = failed_point::write(&files.folder, &file.scene, model, &cause).unwrap_or_else(|error| {
+                    observer.on_warning(&format!("no {}: {error}", failed_point::FILE));
+                    None
+                });
                 let kept = (increments > 0).then(|| files.folder.clone());
-                Err(RunError::Solver { cause: Box::new(cause), kept }.into())
+                Err(RunError::Solver { cause: Box::new(cause), kept, point }.into())
             }
             _ => {
                 let seconds = stopwatch.started.elapsed().as_secs_f64();

@@ -27,10 +27,10 @@ pub(super) struct Part {
     pub half: Option<HalfCycle>,
 }
 
-/// The parts of a step, in order.
-pub(super) fn parts(step: &Step) -> Vec<Part> {
+/// The parts of a step, in order, of its first `most` cycles.
+pub(super) fn parts(step: &Step, most: usize) -> Vec<Part> {
     let Some(cycles) = &step.cycles else { return vec![Part { step: step.clone(), of_peak: None, half: None }] };
-    let halves = (1..=cycles.count).flat_map(|cycle| [(cycle, false), (cycle, true)]);
+    let halves = (1..=cycles.count.min(most)).flat_map(|cycle| [(cycle, false), (cycle, true)]);
     halves
         .map(|(cycle, rising)| {
             let written = cycle % cycles.every == 0 || cycle == cycles.count;

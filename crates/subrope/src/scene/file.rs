@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest as _, Sha256};
+use subrope_io::input;
 
 use super::check;
 use super::sets::DeckNames;
@@ -30,13 +31,26 @@ impl SceneFile {
     /// # Errors
     /// [`SceneError::Read`] when the file cannot be read, [`SceneError::Invalid`] with all problems found in it.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let bytes = input::read_bytes(path, input::MAX_TEXT);
+        let bytes = bytes.map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        Self::of_bytes(path, bytes, |deck| input::read_bytes(deck, MAX_DECK))
+    }
+
+    /// The same from bytes; `read` gives those of the deck.
+    ///
+    /// # Errors
+    /// As [`SceneFile::load`].
+    pub fn of_bytes(
+        path: &Path,
+        bytes: Vec<u8>,
+        read: impl FnOnce(&Path) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
         let name = path.display().to_string();
         let text = text_of(&name, bytes)?;
         let (scene, document) = document::read::<Scene>(&name, &text)?;
         let deck = scene.deck.as_ref().map(|deck| folder_of(path).join(&deck.file));
         let content = match &deck {
-            Some(file) => Some(read_deck(file, &document)?),
+            Some(file) => Some(deck_content(file, read(file), &document)?),
             None => None,
         };
         document.reject(check::check(&scene, &document, content.as_ref().map(|c| &c.names)))?;
@@ -59,6 +73,9 @@ impl SceneFile {
     }
 }
 
+/// Longest deck \[bytes\].
+const MAX_DECK: u64 = 4 << 30;
+
 /// A deck's bytes and the names in it.
 struct DeckContent {
     bytes: Vec<u8>,
@@ -79,9 +96,9 @@ fn text_of(name: &str, bytes: Vec<u8>) -> Result<String, SceneError> {
     })
 }
 
-fn read_deck(file: &Path, document: &Document) -> Result<DeckContent, SceneError> {
+fn deck_content(file: &Path, bytes: std::io::Result<Vec<u8>>, document: &Document) -> Result<DeckContent, SceneError> {
     let refused = |cause, help| document.invalid(vec![unusable(document, cause, help)]);
-    let bytes = std::fs::read(file).map_err(|error| {
+    let bytes = bytes.map_err(|error| {
         refused(format!("cannot read the deck {}: {error}", file.display()), "the path is relative to the scene file")
     })?;
     let names = DeckNames::scan(&String::from_utf8_lossy(&bytes));

@@ -60,6 +60,12 @@ pub use strand::{Hand, MeshLines, Origin, SectionArea, Strand, StrandMesh};
 /// The node sets of a generated strand.
 pub const STRAND_SETS: [&str; 6] = ["END_A", "END_B", "LATERAL", "SURFACE_NODES", "AXIS", "ALL"];
 
+/// Most ends, contacts, rigid bodies, constraints; most entries of one kind in a step.
+pub(crate) const MOST_PARTS: usize = 1000;
+
+/// Most steps as written; half cycles are not counted.
+const MOST_STEPS: usize = 10_000;
+
 /// The surfaces of a generated strand.
 pub const STRAND_SURFACES: [&str; 1] = ["LATERAL"];
 
@@ -94,18 +100,22 @@ pub struct Scene {
     pub law: Law,
     /// Reference points that carry node sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub end: Vec<End>,
     /// Surfaces that touch.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub contact: Vec<Contact>,
     /// Rigid bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub rigid: Vec<Rigid>,
     /// Prescribed displacements of node sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub constraint: Vec<Constraint>,
     /// What happens, step by step; at least one.
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = MOST_STEPS))]
     pub step: Vec<Step>,
     /// Newton's method and the choice of increments.
     #[serde(default)]

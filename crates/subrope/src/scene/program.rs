@@ -174,11 +174,22 @@ impl Program {
     /// Resolves all steps of a checked scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        Self::with_cycles(scene, usize::MAX)
+    }
+
+    /// The same with one cycle of each step that has any.
+    #[must_use]
+    pub fn outline(scene: &Scene) -> Self {
+        Self::with_cycles(scene, 1)
+    }
+
+    fn with_cycles(scene: &Scene, most: usize) -> Self {
         let length = scene.length();
         let mut standing = initial_standing(scene);
         let mut loads = BTreeMap::new();
         let mut steps: Vec<ProgramStep> = Vec::with_capacity(scene.step.len());
-        let parts = scene.step.iter().enumerate().flat_map(|(i, s)| parts(s).into_iter().map(move |part| (i, part)));
+        let parts =
+            scene.step.iter().enumerate().flat_map(|(i, s)| parts(s, most).into_iter().map(move |part| (i, part)));
         for (source, part) in parts {
             let step = expand(&part.step, length);
             let mut motions = standing_motions(&standing);

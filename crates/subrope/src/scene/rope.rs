@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::sizing::Sizing;
 use super::strand::{Hand, Origin, StrandMesh};
 
+/// Most strands of a rope.
+const MOST_STRANDS: usize = 1000;
+
 /// Equal strands laid together about z, with or without a straight core, ends plane and normal to z. Its node sets are
 /// `END_A` (lowest z), `END_B`, `ALL`, and for every strand `END_A_1`, `END_B_1`, `SURFACE_NODES_1`, `AXIS_1`; its
 /// surfaces are `LATERAL_1` and so on; a core is the last strand. Give `radius` and one of `lay_angle`, `lay_length` and
@@ -16,7 +19,7 @@ use super::strand::{Hand, Origin, StrandMesh};
 pub struct Rope {
     /// Number of strands without the core \[-\].
     #[serde(default = "three")]
-    #[schemars(range(min = 2))]
+    #[schemars(range(min = 2, max = MOST_STRANDS))]
     pub strands: usize,
     /// Radius of a strand \[mm\]; when left out it follows from `outer_diameter`, or from `linear_density` with `density`
     /// and `packing` in `[rope.sizing]`.

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::MOST_PARTS;
 use super::prescription::{Component, Prescription, Ramp};
 
 /// A step. What it does not mention stays as the step before left it; before the first step every component of every
@@ -31,15 +32,19 @@ pub struct Step {
     pub cycles: Option<Cycles>,
     /// Motions of reference points and of constraints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub prescribe: Vec<Prescribe>,
     /// Dead forces and moments on reference points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub force: Vec<PointForce>,
     /// Dead forces on node sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub nodal_force: Vec<NodalForce>,
     /// Dead tractions on surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = MOST_PARTS))]
     pub traction: Vec<Traction>,
 }
 

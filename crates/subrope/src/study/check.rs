@@ -8,11 +8,15 @@ use super::quantity::{self, Source};
 use super::setting::{KeyPath, Setting};
 use crate::document::{Document, Location, Problem, ProblemKind};
 
+/// Most members of a study, each a process of its own.
+const MOST_MEMBERS: f64 = 1000.0;
+
 /// Problems of a study without a look at its scene.
 pub(super) fn check(study: &Study, document: &Document) -> Vec<Problem> {
     let mut checker = Checker { document, problems: Vec::new() };
     checker.paths(&Location::root().at("set"), study.set.keys());
     study.series.iter().enumerate().for_each(|(index, series)| checker.series(index, series));
+    checker.members(study);
     checker.unique("series", &study.series.iter().map(|s| s.name.as_str()).collect::<Vec<_>>());
     study.quantity.iter().enumerate().for_each(|(index, quantity)| checker.quantity(index, quantity));
     checker.unique("quantity", &study.quantity.iter().map(|q| q.name.as_str()).collect::<Vec<_>>());
@@ -75,6 +79,20 @@ impl Checker<'_> {
                 self.wrong_length(&at, "sizes", sizes.len(), &format!("{levels} entries, one per level"));
             } else if sizes.iter().any(|h| *h <= 0.0) || sizes.windows(2).any(|h| h[1] >= h[0]) {
                 self.inconsistent(&at, "`sizes` must be positive and fall from level to level", "coarse comes first");
+            }
+        }
+    }
+
+    /// Lists in `each` multiply.
+    fn members(&mut self, study: &Study) {
+        let mut sum = 0.0;
+        for (index, series) in study.series.iter().enumerate() {
+            let levels = series.levels.values().next().map_or(1, Vec::len) as f64;
+            sum += series.each.values().fold(levels, |product, list| product * list.len() as f64);
+            if sum > MOST_MEMBERS {
+                let cause = format!("the study has {sum} members up to here, more than {MOST_MEMBERS}");
+                let at = Location::root().at("series").at(index).at("name");
+                return self.inconsistent(&at, cause, "shorter lists in `each` and `levels`, or several studies");
             }
         }
     }

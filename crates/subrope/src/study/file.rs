@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use subrope_io::input;
 
 use super::members::{Family, Member};
 use super::setting::Setting;
 use super::{StudyError, check, members};
 use crate::Error;
 use crate::document::{self, InvalidDocument, Location, ProblemKind};
-use crate::scene::SceneFile;
+use crate::scene::{SceneError, SceneFile};
 
 /// A study: a scene run with varied settings, and how far its results are from a reference at what cost.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -56,10 +57,10 @@ pub struct Study {
     #[serde(default)]
     pub reference: Option<Reference>,
     /// What is looked at.
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = 1000))]
     pub quantity: Vec<Quantity>,
     /// Series of members, from coarse to fine.
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = 1000))]
     pub series: Vec<Series>,
 }
 
@@ -207,19 +208,34 @@ impl StudyFile {
     /// # Errors
     /// [`Error::Study`] with the place of every problem, [`Error::Scene`] when the scene itself is wrong.
     pub fn load(path: &Path) -> Result<Self, Error> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| StudyError::Read { path: path.to_owned(), source })?;
+        let text = input::read_text(path, input::MAX_TEXT);
+        let text = text.map_err(|source| StudyError::Read { path: path.to_owned(), source })?;
+        Self::of_text(path, &text, |scene| input::read_bytes(scene, input::MAX_TEXT), SceneFile::load)
+    }
+
+    /// The same from a text; `read` gives the bytes of the scene, `load` checks it.
+    ///
+    /// # Errors
+    /// As [`StudyFile::load`].
+    pub fn of_text(
+        path: &Path,
+        text: &str,
+        read: impl FnOnce(&Path) -> std::io::Result<Vec<u8>>,
+        load: impl FnOnce(&Path) -> Result<SceneFile, SceneError>,
+    ) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let (study, document) = document::read::<Study>(&name, &text).map_err(invalid)?;
+        let (study, document) = document::read::<Study>(&name, text).map_err(invalid)?;
         let scene = path.parent().unwrap_or(Path::new("")).join(&study.scene);
-        let base = std::fs::read_to_string(&scene).map_err(|error| {
+        let base = read(&scene).map_err(|error| {
             let cause = format!("cannot read the scene {}: {error}", scene.display());
             let at = Location::root().at("scene");
             let problem = document.problem(&at, ProblemKind::UnusableFile { cause });
             invalid(document.invalid(vec![problem.help("the path is relative to the study file")]))
         })?;
         document.reject(check::check(&study, &document)).map_err(invalid)?;
-        SceneFile::load(&scene)?;
+        load(&scene)?;
+        // Scenes are UTF-8 text, or they would not have been loaded.
+        let base = String::from_utf8_lossy(&base);
         let expanded = members::expand(&study, &document, &base, &scene).map_err(invalid)?;
         document.reject(check::check_reference(&study, &document, &expanded.families)).map_err(invalid)?;
         Ok(Self { study, path: path.to_owned(), scene, families: expanded.families, members: expanded.members })

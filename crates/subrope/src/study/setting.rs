@@ -36,6 +36,9 @@ impl fmt::Display for Setting {
     }
 }
 
+/// Most keys and indices of a path: no scene is nested as deeply.
+const DEEPEST: usize = 32;
+
 /// Why a setting cannot be put into a scene.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingFault {
@@ -94,7 +97,7 @@ impl KeyPath {
                 segments.push(Segment::from(index));
             }
         }
-        Ok(Self(segments))
+        if segments.len() > DEEPEST { Err(wrong()) } else { Ok(Self(segments)) }
     }
 
     /// Puts a value there; tables on the way are made where the scene has none.
@@ -162,6 +165,7 @@ mod tests {
 
     #[test]
     fn what_is_no_path_is_refused() {
+        assert!(KeyPath::parse(&["a"; 33].join(".")).is_err());
         for path in ["", "a..b", "[0]", "a[x]", "a[0", "a]0[", "a b"] {
             assert_eq!(KeyPath::parse(path), Err(SettingFault::Path { path: path.into() }));
         }

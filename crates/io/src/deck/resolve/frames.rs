@@ -16,12 +16,12 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    pub fn resolve(raw: &Raw, elements: &Resolved) -> Result<Self, Fault> {
+    pub fn resolve(raw: &Raw, elements: &Resolved, budget: &mut usize) -> Result<Self, Fault> {
         let cells = raw.elements.table.len();
         let mut sections = Self { frames: vec![None; cells], materials: vec![None; cells], material_names: Vec::new() };
         let mut taken = vec![false; cells];
         let mut names = BTreeMap::new();
-        let mut axes = AxesCache { raw, elements, cells: BTreeMap::new() };
+        let mut axes = AxesCache { raw, elements, cells: BTreeMap::new(), budget };
         for section in &raw.sections {
             let set = raw.element_sets.find(&section.elements);
             let unknown = || DeckErrorKind::UnknownElementSet { name: section.elements.clone() };
@@ -55,6 +55,8 @@ struct AxesCache<'a> {
     raw: &'a Raw,
     elements: &'a Resolved,
     cells: BTreeMap<&'a str, BTreeMap<u32, Matrix3<f64>>>,
+    /// Rows that may still be given to cells.
+    budget: &'a mut usize,
 }
 
 impl<'a> AxesCache<'a> {
@@ -92,7 +94,7 @@ impl<'a> AxesCache<'a> {
     }
 
     fn rows(
-        &self,
+        &mut self,
         name: &str,
         distribution: &RawDistribution,
         orientation: &RawOrientation,
@@ -102,7 +104,9 @@ impl<'a> AxesCache<'a> {
         for row in &distribution.rows {
             let Some(item) = &row.item else { continue };
             let frame = row_axes(row, expected)?;
-            for cell in self.cells_of(item).at(row.at)? {
+            let own = self.cells_of(item).at(row.at)?;
+            super::sets::spend(self.budget, own.len()).at(row.at)?;
+            for cell in own {
                 cells.insert(cell, frame);
             }
         }

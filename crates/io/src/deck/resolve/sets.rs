@@ -14,7 +14,7 @@ pub(super) struct Resolved {
 }
 
 /// Takes `count` members from what is allowed.
-fn spend(budget: &mut usize, count: usize) -> Result<(), DeckErrorKind> {
+pub(super) fn spend(budget: &mut usize, count: usize) -> Result<(), DeckErrorKind> {
     *budget = budget.checked_sub(count).ok_or(DeckErrorKind::TooManyMembers { limit: MAX_MEMBERS })?;
     Ok(())
 }
@@ -23,7 +23,7 @@ impl Resolved {
     pub fn elements(raw: &Raw, budget: &mut usize) -> Result<Self, Fault> {
         let undefined = |label| DeckErrorKind::UndefinedElement { label };
         let unknown = |name| DeckErrorKind::UnknownElementSet { name };
-        let none = |_: &str| Ok(Vec::new());
+        let none = |_: &str, _: &mut usize| Ok(Vec::new());
         Self::resolve(&raw.element_sets, &raw.elements.table, undefined, unknown, none, budget)
     }
 
@@ -36,10 +36,11 @@ impl Resolved {
     ) -> Result<Self, Fault> {
         let undefined = |label| DeckErrorKind::UndefinedNode { label };
         let unknown = |name| DeckErrorKind::UnknownNodeSet { name };
-        let nodes_of = |name: &str| {
+        let nodes_of = |name: &str, budget: &mut usize| {
             let set = raw.element_sets.find(name);
             let set = set.ok_or_else(|| DeckErrorKind::UnknownElementSet { name: name.to_owned() })?;
             let mut nodes = BTreeSet::new();
+            spend(budget, elements.of(set).len())?;
             for &cell in elements.of(set) {
                 let begin = cell as usize * nodes_per_cell;
                 nodes.extend(&cells[begin..begin + nodes_per_cell]);
@@ -54,7 +55,7 @@ impl Resolved {
         labels: &Labels,
         undefined: impl Fn(u64) -> DeckErrorKind,
         unknown: impl Fn(String) -> DeckErrorKind,
-        nodes_of: impl Fn(&str) -> Result<Vec<u32>, DeckErrorKind>,
+        nodes_of: impl Fn(&str, &mut usize) -> Result<Vec<u32>, DeckErrorKind>,
         budget: &mut usize,
     ) -> Result<Self, Fault> {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); sets.names.len()];
@@ -65,11 +66,16 @@ impl Resolved {
                     labels.find(*label).map(|i| vec![i]).ok_or_else(|| undefined(*label))
                 }
                 Entry::Item(Item::Set(name)) => match sets.find(name) {
-                    Some(other) if seen[other as usize] => Ok(unique(members[other as usize].clone())),
+                    Some(other) if seen[other as usize] => {
+                        // Kept sorted, so that a set named again and again is sorted once.
+                        let other = &mut members[other as usize];
+                        *other = unique(std::mem::take(other));
+                        Ok(other.clone())
+                    }
                     _ => Err(unknown(name.clone())),
                 },
                 Entry::Range { first, last, step } => range(labels, [*first, *last, *step], &undefined),
-                Entry::NodesOf(name) => nodes_of(name),
+                Entry::NodesOf(name) => nodes_of(name, budget),
             };
             let added = added.at(*at)?;
             spend(budget, added.len()).at(*at)?;

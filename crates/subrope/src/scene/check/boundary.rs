@@ -11,14 +11,8 @@ impl Checker<'_> {
         self.unique("constraint", &scene.constraint.iter().map(|c| c.name.as_str()).collect::<Vec<_>>());
         for (index, end) in scene.end.iter().enumerate() {
             let at = top("end").at(index);
-            if end.name.contains(|c: char| !(c.is_alphanumeric() || "_-+ ".contains(c))) || end.name.trim().is_empty() {
-                let cause = format!("the name \"{}\" cannot head a column of history.csv", end.name);
-                self.inconsistent(
-                    &at.at("name"),
-                    cause,
-                    "letters, digits, _, -, + and blanks; give the node set by `set`",
-                );
-            }
+            let help = "letters, digits, _, -, + and blanks within; give the node set by `set`";
+            self.heading(&at.at("name"), &end.name, help);
             let key = if end.set.is_some() { "set" } else { "name" };
             self.node_set(&at.at(key), end.set());
             if end.kind == EndKind::Sliding {

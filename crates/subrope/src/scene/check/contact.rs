@@ -61,6 +61,7 @@ impl Checker<'_> {
         self.unique("rigid", &scene.rigid.iter().map(|r| r.name.as_str()).collect::<Vec<_>>());
         for (index, rigid) in scene.rigid.iter().enumerate() {
             let at = top("rigid").at(index);
+            self.heading(&at.at("name"), &rigid.name, "letters, digits, _, -, + and blanks within");
             if rigid.axis.iter().all(|c| *c == 0.0) {
                 self.inconsistent(&at.at("axis"), "`axis` is a direction and cannot be zero", "");
             }
@@ -85,6 +86,7 @@ impl Checker<'_> {
     }
 
     fn contact(&mut self, at: &Location, contact: &Contact) {
+        self.heading(&at.at("name"), &contact.name, "letters, digits, _, -, + and blanks within");
         match (&contact.primary, &contact.secondary) {
             (Some(primary), Some(secondary)) => {
                 if !self.scene.rigid.iter().any(|r| r.name == *primary) {

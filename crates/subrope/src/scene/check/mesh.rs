@@ -1,7 +1,8 @@
 //! Checks of strand, deck and element.
 
+use super::names::Names;
 use super::{Checker, top};
-use crate::document::{Location, ProblemKind};
+use crate::document::Location;
 use crate::scene::{Deck, Fibres, Formulation, HelixFibres, Strand};
 
 impl Checker<'_> {
@@ -56,16 +57,9 @@ impl Checker<'_> {
             Fibres::Helix(helix) => self.helix(&at.at("fibres").at("helix"), helix),
         }
         let Some(names) = self.names.filter(|n| !n.includes) else { return };
-        let known: Vec<String> = names.sets.union(&names.surfaces).cloned().collect();
+        let known = Names::new(names.sets.union(&names.surfaces).cloned().collect());
         for (alias, name) in &deck.sets {
-            if !known.iter().any(|k| k.eq_ignore_ascii_case(name)) {
-                let kind = ProblemKind::UnknownName {
-                    what: "node set or surface in the deck",
-                    found: name.clone(),
-                    allowed: known.clone(),
-                };
-                self.report(&at.at("sets").at(alias.as_str()), kind, "");
-            }
+            self.one_of(&at.at("sets").at(alias.as_str()), "node set or surface in the deck", name, Some(&known));
         }
     }
 

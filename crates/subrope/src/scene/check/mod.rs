@@ -5,24 +5,34 @@ mod contact;
 mod law;
 mod mesh;
 mod motion;
+mod names;
+mod output;
 mod sizing;
 mod slice;
 mod step;
 
 pub(crate) use law::check_law;
 
+use std::collections::BTreeSet;
+
+use super::Scene;
 use super::sets::DeckNames;
-use super::{STRAND_SETS, STRAND_SURFACES, Scene};
-use crate::document::{Document, Location, Problem, ProblemKind};
+use crate::document::{Document, Location, MOST_PROBLEMS, Problem, ProblemKind};
+use names::{Names, SetNames};
+
+/// Names that a message lists.
+const MOST_NAMES: usize = 100;
 
 /// All problems of a scene; `names` are those of its deck, when it has been opened.
 pub(super) fn check(scene: &Scene, document: &Document, names: Option<&DeckNames>) -> Vec<Problem> {
-    let mut checker = Checker { scene, document, names, problems: Vec::new() };
+    let sets = SetNames::of(scene, names);
+    let mut checker = Checker { scene, document, names, sets: &sets, problems: Vec::new() };
     checker.mesh();
     checker.law();
     checker.boundary();
     checker.contacts();
     checker.slice();
+    checker.output();
     checker.steps();
     checker.problems
 }
@@ -31,6 +41,7 @@ struct Checker<'a> {
     scene: &'a Scene,
     document: &'a Document,
     names: Option<&'a DeckNames>,
+    sets: &'a SetNames,
     problems: Vec<Problem>,
 }
 
@@ -39,7 +50,15 @@ fn top(key: &str) -> Location {
 }
 
 impl Checker<'_> {
+    /// Whether more problems would be read by nobody.
+    fn is_full(&self) -> bool {
+        self.problems.len() >= MOST_PROBLEMS
+    }
+
     fn report(&mut self, at: &Location, kind: ProblemKind, help: &str) {
+        if self.is_full() {
+            return;
+        }
         let problem = self.document.problem(at, kind);
         self.problems.push(if help.is_empty() { problem } else { problem.help(help) });
     }
@@ -59,19 +78,27 @@ impl Checker<'_> {
     }
 
     /// A name that must be one of those defined.
-    fn known(&mut self, at: &Location, what: &'static str, name: &str, allowed: &[String], help: &str) -> bool {
-        let found = allowed.iter().any(|a| a == name);
-        if !found {
-            let kind = ProblemKind::UnknownName { what, found: name.to_owned(), allowed: allowed.to_vec() };
-            self.report(at, kind, help);
+    fn known<'n>(
+        &mut self,
+        at: &Location,
+        what: &'static str,
+        name: &str,
+        allowed: impl Iterator<Item = &'n str> + Clone,
+        help: &str,
+    ) -> bool {
+        let found = allowed.clone().any(|a| a == name);
+        if !found && !self.is_full() {
+            let allowed = allowed.take(MOST_NAMES).map(str::to_owned).collect();
+            self.report(at, ProblemKind::UnknownName { what, found: name.to_owned(), allowed }, help);
         }
         found
     }
 
     /// Names must differ; the second of two equal ones is reported.
     fn unique(&mut self, table: &str, names: &[&str]) {
+        let mut seen = BTreeSet::new();
         for (index, name) in names.iter().enumerate() {
-            if names[..index].contains(name) {
+            if !seen.insert(name) {
                 let cause = format!("the name \"{name}\" is used twice in [[{table}]]");
                 self.inconsistent(&top(table).at(index).at("name"), cause, "give each its own name");
             }
@@ -80,44 +107,21 @@ impl Checker<'_> {
 
     /// A node set; names of a deck do not distinguish case.
     fn node_set(&mut self, at: &Location, name: &str) {
-        if let Some(allowed) = self.set_names()
-            && !allowed.iter().any(|a| a.eq_ignore_ascii_case(name))
-        {
-            let kind = ProblemKind::UnknownName { what: "node set", found: name.to_owned(), allowed };
-            self.report(at, kind, "");
-        }
+        self.one_of(at, "node set", name, self.sets.nodes.as_ref());
     }
 
     /// A surface; names of a deck do not distinguish case.
     fn surface(&mut self, at: &Location, name: &str) {
-        let scene = self.scene;
-        let generated = scene.strand.as_ref().map(|_| STRAND_SURFACES.map(str::to_owned).to_vec());
-        let generated = generated.or(scene.rope.as_ref().map(super::Rope::surface_names));
-        let allowed: Vec<String> = match (generated, self.names.filter(|n| !n.includes)) {
-            (Some(names), _) => names,
-            (None, Some(names)) => names.surfaces.iter().cloned().chain(self.aliases()).collect(),
-            (None, None) => return,
-        };
-        if !allowed.iter().any(|a| a.eq_ignore_ascii_case(name)) {
-            let kind = ProblemKind::UnknownName { what: "surface", found: name.to_owned(), allowed };
-            self.report(at, kind, "");
-        }
+        self.one_of(at, "surface", name, self.sets.surfaces.as_ref());
     }
 
-    /// Names that the scene gives to sets and surfaces of its deck.
-    fn aliases(&self) -> impl Iterator<Item = String> {
-        self.scene.deck.iter().flat_map(|d| d.sets.keys().cloned())
-    }
-
-    /// The names of node sets, when they are all known.
-    fn set_names(&self) -> Option<Vec<String>> {
-        if self.scene.strand.is_some() {
-            return Some(STRAND_SETS.map(str::to_owned).to_vec());
+    /// A name among those known, if they are.
+    fn one_of(&mut self, at: &Location, what: &'static str, name: &str, known: Option<&Names>) {
+        if let Some(known) = known.filter(|known| !known.has(name))
+            && !self.is_full()
+        {
+            let allowed = known.listed.iter().take(MOST_NAMES).cloned().collect();
+            self.report(at, ProblemKind::UnknownName { what, found: name.to_owned(), allowed }, "");
         }
-        if let Some(rope) = &self.scene.rope {
-            return Some(rope.set_names());
-        }
-        let names = self.names.filter(|n| !n.includes)?;
-        Some(names.sets.iter().cloned().chain(self.aliases()).chain(["ALL".to_owned()]).collect())
     }
 }

@@ -1,5 +1,7 @@
 //! Checks of what steps move.
 
+use std::collections::BTreeMap;
+
 use super::{Checker, top};
 use crate::document::{Location, ProblemKind};
 use crate::scene::step::{Bend, BendEnds, CycleControl, Cycles, Prescribe, Step, Tension};
@@ -31,9 +33,10 @@ impl Checker<'_> {
     }
 
     fn moved_twice(&mut self, moved: &[Moved<'_>]) {
-        for (index, one) in moved.iter().enumerate() {
-            let before = moved[..index].iter().find(|o| o.name == one.name && o.component == one.component);
-            if let Some(before) = before {
+        let mut first: BTreeMap<(&str, Component), &Moved<'_>> = BTreeMap::new();
+        for one in moved {
+            let before = *first.entry((one.name, one.component)).or_insert(one);
+            if !std::ptr::eq(before, one) {
                 let key = one.component.key();
                 let cause = format!("`{key}` of \"{}\" is prescribed twice in this step", one.name);
                 self.inconsistent(&one.at, cause, &format!("also by {}", before.at));
@@ -43,9 +46,10 @@ impl Checker<'_> {
 
     /// The name of a reference point.
     pub(super) fn point(&mut self, at: &Location, name: &str) -> bool {
-        let allowed: Vec<String> = self.scene.point_names().map(str::to_owned).collect();
+        let scene = self.scene;
+        let names = scene.end.iter().map(|e| e.name.as_str()).chain(scene.rigid.iter().map(|r| r.name.as_str()));
         let help = "reference points are the [[end]] and [[rigid]] tables of the scene";
-        self.known(at, "reference point", name, &allowed, help)
+        self.known(at, "reference point", name, names, help)
     }
 
     fn bend<'a>(&mut self, at: &Location, bend: &'a Bend, moved: &mut Vec<Moved<'a>>) {
@@ -194,8 +198,8 @@ impl Checker<'_> {
     }
 
     fn prescribed_constraint(&mut self, at: &Location, name: &str, entry: &Prescribe) {
-        let allowed: Vec<String> = self.scene.constraint.iter().map(|c| c.name.clone()).collect();
-        self.known(&at.at("constraint"), "constraint", name, &allowed, "");
+        let scene = self.scene;
+        self.known(&at.at("constraint"), "constraint", name, scene.constraint.iter().map(|c| c.name.as_str()), "");
         let Some(own) = self.scene.constraint.iter().find(|c| c.name == name) else { return };
         let listed: Vec<_> = Component::ALL
             .into_iter()

@@ -1,10 +1,15 @@
 //! Checks of steps: increments, histories, loads.
 
+use std::collections::BTreeSet;
+
 use super::{Checker, top};
 use crate::document::Location;
-use crate::scene::program::Program;
+use crate::scene::program::{Program, given_loads};
 use crate::scene::step::{Increments, Step};
 use crate::scene::{Component, LoadTarget, MotionPath, MotionTarget, ProgramStep, Ramp};
+
+/// Most entries of a program as written, each of some hundred bytes.
+const MOST_ENTRIES: usize = 2_000_000;
 
 impl Checker<'_> {
     pub(super) fn steps(&mut self) {
@@ -17,15 +22,32 @@ impl Checker<'_> {
             self.loads(&at, step);
         }
         // Only a scene without other faults has a program worth looking at.
-        if self.problems.is_empty() {
-            let program = Program::new(scene);
+        if self.problems.is_empty() && self.fits() {
             // All half cycles of a step are alike: the first speaks for them.
+            let program = Program::outline(scene);
             let first = |s: &&ProgramStep| s.half_cycle.is_none_or(|half| half.cycle == 1 && !half.rising);
             for resolved in program.steps.iter().filter(first) {
                 let index = resolved.source;
                 self.loaded_components(&top("step").at(index), &scene.step[index], resolved);
             }
         }
+    }
+
+    /// Every step tells the motion of every component and every load that acts, also where nothing changes.
+    fn fits(&mut self) -> bool {
+        let scene = self.scene;
+        let components = 6 * scene.point_names().count() + 3 * scene.constraint.len();
+        let given = scene.step.iter().flat_map(given_loads).map(|(key, _)| key);
+        let loads = given.collect::<BTreeSet<_>>().len();
+        let entries = scene.step.len() * (components + loads);
+        if entries > MOST_ENTRIES {
+            let cause = format!(
+                "{} steps of {components} components and {loads} loads make {entries} entries, more than {MOST_ENTRIES}",
+                scene.step.len()
+            );
+            self.inconsistent(&top("step"), cause, "fewer steps, ends, constraints or loads");
+        }
+        entries <= MOST_ENTRIES
     }
 
     fn increments(&mut self, at: &Location, increments: &Increments) {
