@@ -154,6 +154,8 @@ pub struct EnergySummary {
     pub interference_mj: f64,
     /// External work less everything else, over the external work.
     pub energy_error: f64,
+    /// Released in snaps, as far as increments are short enough to tell; part of the energy error.
+    pub released_mj: f64,
 }
 
 /// Sizes.
@@ -200,6 +202,10 @@ pub struct CountSummary {
     pub searches: usize,
     /// Converged increments whose tangent has negative pivots: unstable equilibria.
     pub unstable_increments: usize,
+    /// Converged increments at which the number of negative pivots changed: limit and bifurcation points.
+    pub inertia_changes: usize,
+    /// Converged increments with a snap.
+    pub jumps: usize,
 }
 
 /// What took how long.
@@ -373,6 +379,7 @@ fn energies(model: &RopeModel) -> EnergySummary {
         contact_stored_mj: t.contact_stored,
         interference_mj: t.interference,
         energy_error: t.energy_error(),
+        released_mj: t.released,
     }
 }
 
@@ -404,6 +411,8 @@ fn counts(model: &RopeModel) -> CountSummary {
         augmentations: t.augmentations,
         searches: t.searches,
         unstable_increments: t.unstable_increments,
+        inertia_changes: t.inertia_changes,
+        jumps: t.jumps,
     }
 }
 
