@@ -57,7 +57,7 @@ impl Analysis {
             self.totals.note_inertia(record);
             let before = self.ledger(&work, attempt);
             self.commit(&mut work, attempt);
-            record.released = self.settle_account(&before);
+            self.settle_account(&before, record);
         }
         self.work = work;
         outcome

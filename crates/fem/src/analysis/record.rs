@@ -78,10 +78,12 @@ pub struct Totals {
     pub negative_pivots: Option<usize>,
     /// Converged increments at which that number changed.
     pub inertia_changes: usize,
-    /// Converged increments that released energy: snaps.
+    /// Converged increments with a snap: energy left, or came, that forces and dissipation do not account for.
     pub jumps: usize,
-    /// Energy released in them.
+    /// Energy released in them; negative where states of higher energy were jumped to.
     pub released: f64,
+    /// What the balances of all other increments leave open, each within what its work can be known to \[mJ\].
+    pub open: f64,
 }
 
 impl Totals {
@@ -121,7 +123,8 @@ pub struct IncrementRecord {
     pub negative_pivots: Option<usize>,
     /// Negative pivots before and after, where a converged increment has changed their number.
     pub inertia_change: Option<(usize, usize)>,
-    /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none.
+    /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none, negative where the state has
+    /// more energy than was put in.
     pub released: f64,
 }
 

@@ -85,7 +85,7 @@ impl Analysis {
         (self.last_length, self.time, self.curvature) = (last_length, time, curvature);
         self.steps_done = steps_done as usize;
         self.progress = Progress { done, length, count: count as usize };
-        let mut energies = [0.0; 12];
+        let mut energies = [0.0; 13];
         state.read_numbers("totals", &mut energies)?;
         self.totals = Totals::of_kept(energies, array(state, "total_counts")?);
         self.phases = Phases { times: array(state, "nanoseconds")?.map(Duration::from_nanos) };
@@ -139,7 +139,7 @@ fn array<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N]
 }
 
 impl Totals {
-    fn kept(&self) -> ([f64; 12], [u64; 11]) {
+    fn kept(&self) -> ([f64; 13], [u64; 11]) {
         // Taken apart, so that nothing that is added later can be forgotten.
         let Self {
             external_work,
@@ -163,6 +163,7 @@ impl Totals {
             inertia_changes,
             jumps,
             released,
+            open,
         } = *self;
         let energies = [
             external_work,
@@ -177,6 +178,7 @@ impl Totals {
             contact_friction,
             interference,
             released,
+            open,
         ];
         let counts = [
             increments,
@@ -195,7 +197,7 @@ impl Totals {
         (energies, counts.map(|n| n as u64))
     }
 
-    fn of_kept(energies: [f64; 12], counts: [u64; 11]) -> Self {
+    fn of_kept(energies: [f64; 13], counts: [u64; 11]) -> Self {
         let c = counts.map(|n| n as usize);
         Self {
             external_work: energies[0],
@@ -218,6 +220,7 @@ impl Totals {
             negative_pivots: c[8].checked_sub(1),
             inertia_changes: c[9],
             jumps: c[10],
+            open: energies[12],
             released: energies[11],
         }
     }

@@ -151,6 +151,7 @@ impl<'a> Session<'a> {
         let outcome = watch.run_steps(analysis, (steps, half_cycles));
         let elapsed = stopwatch.read(watch.checkpoints.seconds());
         watch.tell_lost_frames();
+        watch.tell_long_increments(analysis);
         let Watch { output, checkpoints, failure, .. } = watch;
         let cycles = output.cycles.rows().to_vec();
         let closed = output.close(scenery, analysis);
@@ -251,6 +252,16 @@ impl Watch<'_> {
         }
     }
 
+    /// Tells when increments were too long for a balance of energy.
+    fn tell_long_increments(&mut self, analysis: &Analysis) {
+        if analysis.totals().is_unresolved() {
+            self.observer.on_warning(
+                &"the energy balances of long increments leave more than 5 % of all work open: whether the structure snapped \
+                  in one of them, shorter ones tell (increments.maximum)",
+            );
+        }
+    }
+
     fn keep<T>(&mut self, result: Result<T, IoError>) -> Result<T, FemError> {
         result.map_err(|error| {
             let text = error.to_string();
@@ -288,10 +299,13 @@ impl Watch<'_> {
                 "inertia changed from {before} to {now} negative pivot(s) {at}: {meaning} (history.csv, negative_pivots)"
             ));
         }
-        if record.released > 0.0 {
+        let energy = record.released;
+        if energy != 0.0 {
+            let what = if energy > 0.0 { "released" } else { "appeared" };
             self.observer.on_warning(&format!(
-                "snap {at}: {:.4e} mJ released that forces and sliding do not account for (history.csv, released_energy)",
-                record.released
+                "snap {at}: {:.4e} mJ {what} that forces and sliding do not account for: the state is on another branch \
+                 (history.csv, released_energy)",
+                energy.abs()
             ));
         }
     }

@@ -154,8 +154,11 @@ pub struct EnergySummary {
     pub interference_mj: f64,
     /// External work less everything else, over the external work.
     pub energy_error: f64,
-    /// Released in snaps, as far as increments are short enough to tell; part of the energy error.
+    /// Released in snaps, as far as increments are short enough to tell, less what appeared; part of the energy error.
     pub released_mj: f64,
+    /// What the balances of all other increments leave open, added up without sign: where it is much beside the work,
+    /// increments are too long to tell a snap.
+    pub open_mj: f64,
 }
 
 /// Sizes.
@@ -380,6 +383,7 @@ fn energies(model: &RopeModel) -> EnergySummary {
         interference_mj: t.interference,
         energy_error: t.energy_error(),
         released_mj: t.released,
+        open_mj: t.open,
     }
 }
 

@@ -51,6 +51,8 @@ pub struct Measured {
     pub jumps: usize,
     /// Energy released in them over the largest external work \[-\].
     pub released: f64,
+    /// Whether increments were reported as too long to tell a snap.
+    pub unresolved: bool,
     /// What the energy balance leaves open over the largest external work \[-\].
     pub energy_error: f64,
     /// Nodal displacements \[mm\].
@@ -145,6 +147,7 @@ fn measure(model: &mut RopeModel, (steps, fraction): (usize, f64), done: bool) -
         symmetric: analysis.system().is_none_or(subrope_fem::System::is_symmetric),
         inertia_changes: totals.inertia_changes,
         jumps: totals.jumps,
+        unresolved: totals.is_unresolved(),
         released: totals.released / scale,
         energy_error: totals.energy_error(),
         displacement: analysis.displacement().to_vec(),

@@ -63,7 +63,8 @@ fn count(family: &StressFamily) -> Result<usize, StressError> {
 }
 
 fn name(family: &StressFamily, each: &[(String, Setting)], own: &[(String, Setting)], level: usize) -> String {
-    let short = |(key, value): &(String, Setting)| format!("{} {value}", key.rsplit('.').next().unwrap_or(key));
+    let short =
+        |(key, value): &(String, Setting)| format!("{} {}", key.rsplit('.').next().unwrap_or(key), number(value));
     let mut parts: Vec<String> = each.iter().map(short).collect();
     match (family.members.get(level), family.twins.get(level)) {
         (Some(name), _) => parts.push(name.clone()),
@@ -71,6 +72,14 @@ fn name(family: &StressFamily, each: &[(String, Setting)], own: &[(String, Setti
         _ => parts.extend(own.iter().map(short)),
     }
     if parts.is_empty() { family.name.clone() } else { parts.join(", ") }
+}
+
+/// A value, powers of ten as such.
+fn number(value: &Setting) -> String {
+    match value.0.as_float() {
+        Some(x) if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) => format!("{x:e}"),
+        _ => value.to_string(),
+    }
 }
 
 fn text(

@@ -93,6 +93,8 @@ pub struct StressRow {
     pub jumps: usize,
     /// Energy released in them over the largest external work \[-\].
     pub released: f64,
+    /// Whether increments were reported as too long to tell a snap.
+    pub unresolved: bool,
     /// What the balance leaves open over the largest external work, snaps included \[-\].
     pub energy_error: f64,
     /// Relative difference of the dimensionless results in other units \[-\].
@@ -127,6 +129,7 @@ impl StressRow {
             inertia_changes: m.symmetric.then_some(m.inertia_changes),
             jumps: m.jumps,
             released: m.released,
+            unresolved: m.unresolved,
             energy_error: m.energy_error,
             difference: outcome.difference,
             digits_lost: outcome.difference.map(digits_lost),

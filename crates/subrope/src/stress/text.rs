@@ -37,7 +37,7 @@ fn table(family: &FamilyReport) -> String {
             row.cutbacks.to_string(),
             condition(row),
             row.inertia_changes.map_or_else(|| "not known".to_owned(), |n| n.to_string()),
-            if row.jumps == 0 { "0".to_owned() } else { format!("{}: {:.1e}", row.jumps, row.released) },
+            snaps(row),
             format!("{:.0e}", row.energy_error),
             row.digits_lost.map_or_else(|| "-".to_owned(), |d| format!("{d:.1}")),
             verdict.to_owned(),
@@ -46,6 +46,12 @@ fn table(family: &FamilyReport) -> String {
     }
     out += &notes(family);
     out
+}
+
+/// How many, with their energy, and whether increments were too long to tell.
+fn snaps(row: &StressRow) -> String {
+    let told = if row.jumps == 0 { "0".to_owned() } else { format!("{}: {:.1e}", row.jumps, row.released) };
+    if row.unresolved { format!("{told}, too long to tell") } else { told }
 }
 
 /// The estimate; that of a symmetric part is marked.
@@ -80,7 +86,7 @@ fn notes(family: &FamilyReport) -> String {
     out
 }
 
-const COLUMNS: [&str; 18] = [
+const COLUMNS: [&str; 19] = [
     "family",
     "member",
     "reached [-]",
@@ -92,6 +98,7 @@ const COLUMNS: [&str; 18] = [
     "inertia_changes",
     "snaps",
     "released [-]",
+    "unresolved",
     "energy_error [-]",
     "twin",
     "difference [-]",
@@ -119,6 +126,7 @@ pub fn csv(report: &StressReport) -> String {
             row.inertia_changes.map_or_else(String::new, |n| n.to_string()),
             row.jumps.to_string(),
             format!("{:?}", row.released),
+            row.unresolved.to_string(),
             format!("{:?}", row.energy_error),
             Twin::to_string(&row.twin),
             known(row.difference),
