@@ -84,8 +84,8 @@ impl<'a> Walk<'a> {
         let inner = schema.get("items").unwrap_or(&Json::Null);
         let described = schema.get("description").and_then(Json::as_str).unwrap_or_default();
         if described.starts_with("Pairs [fraction") {
-            let pairs = items.iter_mut().filter_map(|pair| pair.get_mut(1));
-            return pairs.into_iter().try_for_each(|second| self.value(second, &Json::Null, key));
+            let mut pairs = items.iter_mut().filter_map(|pair| pair.get_mut(1));
+            return pairs.try_for_each(|second| self.value(second, &Json::Null, key));
         }
         items.iter_mut().try_for_each(|item| self.value(item, inner, key))
     }
@@ -96,8 +96,8 @@ impl<'a> Walk<'a> {
         let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(schema);
         let listed = schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Json::as_array);
         let Some(alternatives) = listed else { return schema };
-        let resolved = alternatives.iter().map(|alternative| self.fitting(value, alternative));
-        resolved.into_iter().find(|alternative| fits(value, alternative)).unwrap_or(schema)
+        let mut resolved = alternatives.iter().map(|alternative| self.fitting(value, alternative));
+        resolved.find(|alternative| fits(value, alternative)).unwrap_or(schema)
     }
 
     fn factor_of(&self, schema: &Json) -> Option<f64> {
@@ -106,8 +106,8 @@ impl<'a> Walk<'a> {
 
     /// Factor of the first unit in brackets that is known.
     fn factor_in(&self, text: &str) -> Option<f64> {
-        let brackets = text.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
-        brackets.into_iter().find_map(|(unit, _)| self.factor(unit.trim()))
+        let mut brackets = text.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
+        brackets.find_map(|(unit, _)| self.factor(unit.trim()))
     }
 
     /// Factor of a unit such as "N s/mm^4".
