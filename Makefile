@@ -1,12 +1,13 @@
 # make bend   build and run the main job, a strand bent by turning its ends -> out/bent_strand
 # make test   run all tests
 # make studies   run the studies of accuracy against cost, tables and charts to docs/studies (half an hour)
+# make stress   run the families of extreme scenes, table to docs/stress.md (five minutes)
 # Without make: sh scripts/bend.sh, sh scripts/test.sh.
 
 RESULT ?= out/bent_strand/results.vtkhdf
 PICTURE ?= $(RESULT:.vtkhdf=.png)
 
-.PHONY: bend test check bench bench-draw picture studies clean setup
+.PHONY: bend test check bench bench-draw picture studies stress clean setup
 
 bend:
 	@sh scripts/bend.sh
@@ -34,6 +35,10 @@ picture:
 # STUDIES chooses some by name.
 studies:
 	@sh scripts/studies.sh $(STUDIES)
+
+# Exit code 1 when a member FAILS.
+stress:
+	@sh scripts/stress.sh
 
 clean:
 	cargo clean

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Random paths of the bundle law in high precision: python3 scripts/law_reference.py SEED COUNT > law_random.json
+"""Random paths of the bundle law in high precision: python3 scripts/law_reference.py SEED COUNT > law_random.json,
+single steps over the whole range of strain and distortion: python3 scripts/law_reference.py range SEED > law_range.json.
 
 Independent of the program: the logarithm of the section by eigenvectors, stress and tangent by difference quotients of
 the strain modes at 110 digits, the return by bisection. Needs mpmath.
@@ -158,8 +159,58 @@ def gradient(kind, frame):
     return h.apply(lambda v: mpf(float(v)))
 
 
+SIZES = ["1e-14", "1e-12", "1e-10", "1e-8", "1e-6", "1e-4", "1e-2", "0.1", "0.3", "1", "2", "3"]
+DISTORTIONS = [1, 2, 3, 4, 5, 6, 7, 8]
+
+
+def one_step(name, draw_gradient):
+    """A path of a single step from rest, in general position."""
+    while True:
+        p, frame, rest = parameters(), rotation(), ([mpf(0)] * 2, mpf(0), mpf(0))
+        h = draw_gradient(frame).apply(lambda v: mpf(float(v)))
+        local = frame.T * h * frame + eye(3)
+        # Nearly flat states are those of the distortions.
+        if det(local) < mpf("0.2"):
+            continue
+        try:
+            c = local.T * local
+            found = answer(p, c, (rest, rest))
+            return {"name": name, "params": p, "frame": rows(frame), "state0": [0.0] * 8,
+                    "steps": [told(h, frame, found, tangent(p, c, (rest, rest)))]}
+        except ValueError:
+            continue
+
+
+def whole_range():
+    def noise(size):
+        return matrix(3, 3).apply(lambda _: mpf(random.uniform(-1, 1)) * size)
+
+    def stretched(frame, size):
+        return (eye(3) + noise(mpf("0.02"))) * (frame * diag([1, exp(mpf(size)), exp(-mpf(size))]) * frame.T) - eye(3)
+
+    strains = [one_step(f"strain {s}", lambda _, s=s: noise(mpf(s))) for s in SIZES for _ in range(3)]
+    return strains + [one_step(f"distortion {s}", lambda frame, s=s: stretched(frame, s)) for s in DISTORTIONS for _ in range(3)]
+
+
 def rows(m):
     return [[float(m[i, j]) for j in range(m.cols)] for i in range(m.rows)]
+
+
+def told(h, frame, found, stiffness):
+    """A step as the file has it."""
+    modes, forces, pressure, energy, stress, ((dp, kt, dt), (gp, kl, dl)) = found
+    spatial = frame * stress * frame.T
+    return {
+        "H": rows(h),
+        "I": [float(v) for v in modes],
+        "q": [float(v) for v in forces],
+        "p": float(pressure),
+        "W": float(energy),
+        "S_fibre": [float(stress[i, j]) for i, j in PAIRS],
+        "S_global": [float(spatial[i, j]) for i, j in PAIRS],
+        "D_fibre": rows(stiffness),
+        "state": [float(v) for v in (*dp, *gp, kt, kl, dt, dl)],
+    }
 
 
 def path(number):
@@ -179,22 +230,14 @@ def path(number):
             p["comp_type"] = 0.0 if not steps else p["comp_type"]
             continue
         state = new
-        spatial = frame * stress * frame.T
-        (dp, kt, dt), (gp, kl, dl) = state
-        steps.append({
-            "H": rows(h),
-            "I": [float(v) for v in modes],
-            "q": [float(v) for v in forces],
-            "p": float(pressure),
-            "W": float(energy),
-            "S_fibre": [float(stress[i, j]) for i, j in PAIRS],
-            "S_global": [float(spatial[i, j]) for i, j in PAIRS],
-            "D_fibre": rows(stiffness),
-            "state": [float(v) for v in (*dp, *gp, kt, kl, dt, dl)],
-        })
+        steps.append(told(h, frame, (modes, forces, pressure, energy, stress, new), stiffness))
     return {"name": f"{number} {kind}", "params": p, "frame": rows(frame), "state0": [0.0] * 8, "steps": steps}
 
 
 if __name__ == "__main__":
-    random.seed(int(sys.argv[1]))
-    print(json.dumps({"paths": [path(n) for n in range(int(sys.argv[2]))]}))
+    if sys.argv[1] == "range":
+        random.seed(int(sys.argv[2]))
+        print(json.dumps({"paths": whole_range()}))
+    else:
+        random.seed(int(sys.argv[1]))
+        print(json.dumps({"paths": [path(n) for n in range(int(sys.argv[2]))]}))

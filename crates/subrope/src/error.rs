@@ -9,6 +9,7 @@ use crate::model::ModelError;
 use crate::point::PointError;
 use crate::run::{RunError, output_advice};
 use crate::scene::SceneError;
+use crate::stress::StressError;
 use crate::study::StudyError;
 
 /// Why a command did not do its work.
@@ -30,6 +31,9 @@ pub enum Error {
     /// The study is wrong, or gives no report.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// The list of a stress table is wrong, or a member fails.
+    #[error(transparent)]
+    Stress(#[from] StressError),
     /// A mesh in a format that nobody writes.
     #[error("no mesh can be written to {}", path.display())]
     MeshFormat {
@@ -68,6 +72,8 @@ pub enum Error {
 pub enum ExitCode {
     /// Done.
     Done = 0,
+    /// A member of a stress table fails.
+    Failed = 1,
     /// The input is wrong.
     Input = 2,
     /// No equilibrium was found.
@@ -83,6 +89,7 @@ impl Error {
         match self {
             Self::Run(error) => error.exit_code(),
             Self::Study(error) => error.exit_code(),
+            Self::Stress(error) => error.exit_code(),
             Self::Scene(_)
             | Self::Model(_)
             | Self::Point(_)
@@ -98,7 +105,9 @@ impl Error {
     pub fn plain(&self) -> String {
         match self {
             Self::Scene(error) => error.plain(),
-            Self::Point(PointError::Invalid(document)) | Self::Study(StudyError::Invalid(document)) => document.plain(),
+            Self::Point(PointError::Invalid(document))
+            | Self::Study(StudyError::Invalid(document))
+            | Self::Stress(StressError::Invalid(document)) => document.plain(),
             other => {
                 let mut text = format!("error: {other}");
                 let mut cause = std::error::Error::source(other);
@@ -122,6 +131,7 @@ impl Error {
             Self::Scene(error) => Some(error),
             Self::Point(error) => Some(error),
             Self::Study(error) => Some(error),
+            Self::Stress(error) => Some(error),
             _ => None,
         }
     }

@@ -10,6 +10,7 @@
 //! - [`plan`]: what a run will use and what it leaves out;
 //! - [`run`]: solving it, with results on disk;
 //! - [`study`]: a scene run with varied settings, errors against time and memory;
+//! - [`stress`]: extreme scenes, and whether the program holds there;
 //! - [`analytic`]: closed forms to compare a run with;
 //! - [`point`]: paths of one material point;
 //! - [`progress`]: how a run reports to whoever watches it;
@@ -76,6 +77,7 @@ pub mod progress;
 pub mod run;
 pub mod scene;
 pub mod sizing;
+pub mod stress;
 pub mod study;
 
 pub use error::{Error, ExitCode};

@@ -74,6 +74,36 @@ fn random_paths_are_reproduced() {
     println!("worst relative error {worst:e}");
 }
 
+/// Single steps in general position, strains from 1e-14 to 3 and distortions from 1 to 8, each with a law of its own: what
+/// double precision can know. A stretch of `exp(+-D)` beside one of 1 loses the digits of `exp(2 D)` in the entries of the
+/// displacement gradient alone.
+#[test]
+fn the_whole_range_is_reproduced() {
+    let expected = point::load(&reference().with_file_name("law_range.json")).unwrap();
+    let computed = point::compute("law_range.json", &expected, false).unwrap();
+    assert_eq!(computed.paths.len(), 60);
+    for (path, reference) in computed.paths.iter().zip(&expected.paths) {
+        let (step, known) = (&path.steps[0], &reference.steps[0]);
+        let distortion = path.name.strip_prefix("distortion ").map_or(0.0, |d| d.parse::<f64>().unwrap());
+        let tolerance = 2e-13 * (2.0 * distortion).exp();
+        let mut worst = [0.0_f64; 2];
+        for (slot, key, found, expected) in [
+            (0, "I", step.I.unwrap().to_vec(), known.I.unwrap().to_vec()),
+            (0, "q", step.q.unwrap().to_vec(), known.q.unwrap().to_vec()),
+            (0, "W", vec![step.W.unwrap()], vec![known.W.unwrap()]),
+            (0, "S", step.S_fibre.unwrap().to_vec(), known.S_fibre.unwrap().to_vec()),
+            (1, "D", step.D_fibre.unwrap().as_flattened().to_vec(), known.D_fibre.unwrap().as_flattened().to_vec()),
+            (0, "state", step.state.clone().unwrap(), known.state.clone().unwrap()),
+        ] {
+            let scale = expected.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+            let error = found.iter().zip(&expected).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / scale;
+            assert!(error < tolerance, "{} {key}: {error:e}, allowed {tolerance:e}", path.name);
+            worst[slot] = worst[slot].max(error);
+        }
+        println!("{:16} answers {:.1e}, tangent {:.1e}", path.name, worst[0], worst[1]);
+    }
+}
+
 #[test]
 fn layout_and_numbers_survive() {
     let text = std::fs::read_to_string(reference()).unwrap();

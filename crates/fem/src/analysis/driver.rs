@@ -50,6 +50,8 @@ pub struct Analysis {
     /// Change of the coordinates over the last increment and its length.
     pub(super) last_change: Vec<f64>,
     pub(super) last_length: f64,
+    /// Second-order work of the last increment over its length squared \[mJ\].
+    pub(super) curvature: f64,
     /// Committed nodal displacements.
     pub(super) displacement: Vec<f64>,
     /// Generalised reactions at the committed state.
@@ -108,6 +110,7 @@ impl Analysis {
             step_start: vec![0.0; coordinates],
             last_change: vec![0.0; coordinates],
             last_length: 0.0,
+            curvature: 0.0,
             displacement: vec![0.0; 3 * nodes],
             reaction: vec![0.0; coordinates],
             nodal_load: vec![0.0; 3 * nodes],
@@ -205,6 +208,12 @@ impl Analysis {
         LastTrial { displacement: &base.displacement, residual: &base.residual, time_increment }
     }
 
+    /// Estimate of the condition number \[-\] of the last tangent that was factorised, scaled to a unit diagonal; that of its
+    /// symmetric part where it is not symmetric, and none before the first factorisation.
+    pub fn condition(&mut self) -> Option<f64> {
+        self.system.as_mut()?.condition()
+    }
+
     /// The sparse system of the current step.
     #[must_use]
     pub fn system(&self) -> Option<&System> {
@@ -295,6 +304,8 @@ impl Analysis {
             iterations: 0,
             residuals: Vec::new(),
             negative_pivots: None,
+            inertia_change: None,
+            released: 0.0,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Steps, increments and Newton iterations.
 
+mod balance;
 mod division;
 mod driver;
 mod factors;

@@ -55,8 +55,10 @@ impl Analysis {
         }
         self.totals.iterations += record.iterations;
         if outcome.is_ok() {
-            self.totals.unstable_increments += usize::from(record.negative_pivots.is_some_and(|n| n > 0));
+            self.totals.note_inertia(record);
+            let before = self.ledger(&work, attempt);
             self.commit(&mut work, attempt);
+            self.settle_account(&before, record);
         }
         self.work = work;
         outcome

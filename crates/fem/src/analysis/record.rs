@@ -74,6 +74,16 @@ pub struct Totals {
     pub searches: usize,
     /// Converged increments whose last tangent had negative pivots.
     pub unstable_increments: usize,
+    /// Negative pivots at the last converged increment that knew them.
+    pub negative_pivots: Option<usize>,
+    /// Converged increments at which that number changed.
+    pub inertia_changes: usize,
+    /// Converged increments with a snap: energy left, or came, that forces and dissipation do not account for.
+    pub jumps: usize,
+    /// Energy released in them; negative where states of higher energy were jumped to.
+    pub released: f64,
+    /// What the balances of all other increments leave open, each within what its work can be known to \[mJ\].
+    pub open: f64,
 }
 
 impl Totals {
@@ -111,6 +121,11 @@ pub struct IncrementRecord {
     pub residuals: Vec<f64>,
     /// Negative pivots of the last tangent: more than zero past a limit or bifurcation point.
     pub negative_pivots: Option<usize>,
+    /// Negative pivots before and after, where a converged increment has changed their number.
+    pub inertia_change: Option<(usize, usize)>,
+    /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none, negative where the state has
+    /// more energy than was put in.
+    pub released: f64,
 }
 
 impl IncrementRecord {

@@ -30,7 +30,8 @@ impl Analysis {
             state.counts(name, flags.len(), &mut flags.iter().map(|f| u64::from(*f)))?;
         }
         let Progress { done, length, count } = self.progress;
-        let scalars = [self.largest_reference, self.stiffness_scale, self.last_length, self.time, done, length];
+        let (largest, stiffness) = (self.largest_reference, self.stiffness_scale);
+        let scalars = [largest, stiffness, self.last_length, self.time, done, length, self.curvature];
         state.numbers("scalars", scalars.len(), &mut scalars.into_iter())?;
         state.counts("progress", 2, &mut [self.steps_done as u64, count as u64].into_iter())?;
         let (energies, counts) = self.totals.kept();
@@ -76,18 +77,19 @@ impl Analysis {
     }
 
     fn restore_scalars(&mut self, state: &dyn StateReader) -> Result<(), FemError> {
-        let mut scalars = [0.0; 6];
+        let mut scalars = [0.0; 7];
         state.read_numbers("scalars", &mut scalars)?;
-        let [largest_reference, stiffness_scale, last_length, time, done, length] = scalars;
+        let [largest_reference, stiffness_scale, last_length, time, done, length, curvature] = scalars;
         let [steps_done, count] = counts(state, "progress")?;
-        if !((0.0..=1.0).contains(&done) && length > 0.0 && length <= 1.0 && time.is_finite()) {
+        if !((0.0..=1.0).contains(&done) && length > 0.0 && length <= 1.0 && time.is_finite() && curvature.is_finite())
+        {
             return Err(StateError::Value { name: "scalars".into() }.into());
         }
         (self.largest_reference, self.stiffness_scale) = (largest_reference, stiffness_scale);
-        (self.last_length, self.time) = (last_length, time);
+        (self.last_length, self.time, self.curvature) = (last_length, time, curvature);
         self.steps_done = steps_done as usize;
         self.progress = Progress { done, length, count: count as usize };
-        let mut energies = [0.0; 11];
+        let mut energies = [0.0; 13];
         state.read_numbers("totals", &mut energies)?;
         self.totals = Totals::of_kept(energies, counts(state, "total_counts")?);
         self.phases = Phases { times: counts(state, "nanoseconds")?.map(Duration::from_nanos) };
@@ -147,7 +149,7 @@ fn counts<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N
 }
 
 impl Totals {
-    fn kept(&self) -> ([f64; 11], [u64; 8]) {
+    fn kept(&self) -> ([f64; 13], [u64; 11]) {
         // Taken apart, so that nothing that is added later can be forgotten.
         let Self {
             external_work,
@@ -167,6 +169,11 @@ impl Totals {
             augmentations,
             searches,
             unstable_increments,
+            negative_pivots,
+            inertia_changes,
+            jumps,
+            released,
+            open,
         } = *self;
         let energies = [
             external_work,
@@ -180,6 +187,8 @@ impl Totals {
             contact_stored,
             contact_friction,
             interference,
+            released,
+            open,
         ];
         let counts = [
             increments,
@@ -190,11 +199,15 @@ impl Totals {
             augmentations,
             searches,
             unstable_increments,
+            // Zero stands for unknown.
+            negative_pivots.map_or(0, |n| n + 1),
+            inertia_changes,
+            jumps,
         ];
         (energies, counts.map(|n| n as u64))
     }
 
-    fn of_kept(energies: [f64; 11], counts: [u64; 8]) -> Self {
+    fn of_kept(energies: [f64; 13], counts: [u64; 11]) -> Self {
         let c = counts.map(|n| n as usize);
         Self {
             external_work: energies[0],
@@ -214,6 +227,11 @@ impl Totals {
             augmentations: c[5],
             searches: c[6],
             unstable_increments: c[7],
+            negative_pivots: c[8].checked_sub(1),
+            inertia_changes: c[9],
+            jumps: c[10],
+            open: energies[12],
+            released: energies[11],
         }
     }
 }

@@ -207,6 +207,13 @@ impl System {
         self.solver.worth_of_factors()
     }
 
+    /// Estimate of the condition number of the tangent last factorised, scaled to a unit diagonal; of its symmetric part
+    /// where it is not symmetric. See [`TangentSolver::condition`](crate::linear::TangentSolver::condition).
+    pub fn condition(&mut self) -> Option<f64> {
+        let nnz = self.entries();
+        self.solver.condition(&self.values[..nnz])
+    }
+
     /// Matrix values and pattern, for checks.
     pub fn matrix(&self) -> (&SparsePattern, &[f64]) {
         (self.solver.pattern(), &self.values[..self.entries()])

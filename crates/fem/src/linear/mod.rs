@@ -12,6 +12,7 @@
 
 mod block_lu;
 mod block_plan;
+mod condition;
 mod cross_sections;
 mod dissection;
 mod error;

@@ -5,6 +5,7 @@
 //! which has to leave the order of least fill. Where the symmetric part is no guide, the `LU` takes its place. In the same
 //! way factors serve matrices near the one that they were made of.
 
+use super::condition::condition;
 use super::error::LinearError;
 use super::gmres::{Gmres, GmresLimits, LinearOperator};
 use super::options::{AnalysisReport, FactorReport, Method, SolverOptions};
@@ -121,6 +122,20 @@ impl TangentSolver {
     pub fn worth_of_factors(&self) -> f64 {
         let fill = &self.report.fill;
         if self.report.method == Method::Ldlt { fill.flops / (fill.nonzeros * SOLUTION) } else { 0.0 }
+    }
+
+    /// Estimate of the condition number \[-\] of the symmetric matrix last factorised, scaled to a unit diagonal:
+    /// `|D A D|_1 |(D A D)^-1|_1` by Hager's and Higham's method, from a few solves. Of an unsymmetric matrix it is that of
+    /// its symmetric part; none where neither was factorised.
+    pub fn condition(&mut self, values: &[f64]) -> Option<f64> {
+        let Self { pattern, solver, part, .. } = self;
+        let (pattern, values) = match part {
+            Some(part) => (part.pattern().clone(), part.of(values).to_vec()),
+            None if pattern.storage() == Storage::Lower => (pattern.clone(), values.to_vec()),
+            None => return None,
+        };
+        let estimate = condition((&pattern, &values), |b, x| solver.solve_once(&values, b, x));
+        estimate.ok().filter(|c| c.is_finite())
     }
 
     fn solve_by_lu(

@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 /// Simulation of synthetic mooring ropes from the inside.
 ///
-/// Exit codes: 0 done, 2 the input is wrong, 3 no equilibrium was found, 4 the output could not be written.
+/// Exit codes: 0 done, 1 a member of a stress table fails, 2 the input is wrong, 3 no equilibrium was found, 4 the output could not be written.
 #[derive(Debug, Parser)]
 #[command(name = "subrope", version, about, long_about)]
 pub(super) struct Arguments {
@@ -71,6 +71,21 @@ pub(super) enum Command {
         #[arg(long)]
         resume: bool,
     },
+    /// Run families of extreme scenes and say of each whether the program holds there
+    ///
+    /// Every member runs in memory, and once more in other units. Written: stress.md, stress.csv, stress.json with load
+    /// reached, iterations, cutbacks, condition, changes of inertia, snaps, energy error, digits lost and verdict. The exit
+    /// code is 1 when a verdict is FAILS.
+    Stress {
+        /// The list of families [default: those that come with the program]
+        file: Option<PathBuf>,
+        /// Folder of the tables
+        #[arg(long, default_value = "out/stress")]
+        out: PathBuf,
+        /// Only families whose name holds this text; may be repeated
+        #[arg(long)]
+        only: Vec<String>,
+    },
     /// Drive a law along the paths of a point file (.json or .toml), or ask it again at the point where a run failed
     /// (failed_point.toml)
     Point {
@@ -100,6 +115,9 @@ pub(super) enum Command {
         /// The schema of study files instead
         #[arg(long, conflicts_with = "point")]
         study: bool,
+        /// The schema of stress lists instead
+        #[arg(long, conflicts_with_all = ["point", "study"])]
+        stress: bool,
     },
 }
 

@@ -26,9 +26,10 @@ pub(super) fn run(command: Command) -> Result<(), Error> {
             let options = StudyCommand { out, repeats: repeats.map(usize::from), target, resume };
             study::run(&file, &options)
         }
+        Command::Stress { file, out, only } => super::stress::run(file.as_deref(), &out, &only),
         Command::Point { file, output, differences } => run_point(&file, output.as_deref(), differences),
         Command::Mesh { scene, output } => mesh_file::write_mesh(&SceneFile::load(&scene)?, &output),
-        Command::Schema { point, study } => schema(point, study),
+        Command::Schema { point, study, stress } => schema(point, study, stress),
     }
 }
 
@@ -119,10 +120,11 @@ fn run_point(path: &Path, output: Option<&Path>, differences: bool) -> Result<()
     }
 }
 
-fn schema(point: bool, study: bool) -> Result<(), Error> {
-    let schema = match (point, study) {
-        (true, _) => point::PathScene::schema(),
-        (_, true) => crate::study::Study::schema(),
+fn schema(point: bool, study: bool, stress: bool) -> Result<(), Error> {
+    let schema = match (point, study, stress) {
+        (true, ..) => point::PathScene::schema(),
+        (_, true, _) => crate::study::Study::schema(),
+        (.., true) => crate::stress::StressList::schema(),
         _ => Scene::schema(),
     };
     print(format!("{schema:#}\n").as_bytes())

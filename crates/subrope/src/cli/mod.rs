@@ -5,6 +5,7 @@ mod commands;
 mod interrupt;
 mod output;
 mod report;
+mod stress;
 mod study;
 mod templates;
 mod terminal;

@@ -8,6 +8,7 @@ use crate::Error;
 use crate::document::{InvalidDocument, Problem};
 use crate::point::PointError;
 use crate::scene::SceneError;
+use crate::stress::StressError;
 use crate::study::StudyError;
 
 /// The whole error; the problems of a document one after the other, each with its place.
@@ -17,7 +18,8 @@ pub(super) fn graphical(error: &Error) -> Result<String, fmt::Error> {
     match error {
         Error::Scene(SceneError::Invalid(document))
         | Error::Point(PointError::Invalid(document))
-        | Error::Study(StudyError::Invalid(document)) => {
+        | Error::Study(StudyError::Invalid(document))
+        | Error::Stress(StressError::Invalid(document)) => {
             located(document).try_for_each(|problem| handler.render_report(&mut text, &problem))?;
         }
         other => handler.render_report(&mut text, other)?,

@@ -121,6 +121,11 @@ impl MeshModel {
         Ok((Self { mesh, frames, strand: None, rope: None, slice: None }, deck.ignored))
     }
 
+    /// Moves all nodes \[mm\]; what the mesh was generated from stays where it was.
+    pub fn shift(&mut self, by: Vector3<f64>) {
+        self.mesh.points.iter_mut().for_each(|point| *point += by);
+    }
+
     /// How often a layer of a slice counts along a strand; once where the whole strand is meshed.
     #[must_use]
     pub fn layers_per_strand(&self) -> f64 {

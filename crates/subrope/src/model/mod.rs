@@ -84,6 +84,14 @@ impl RopeModel {
         threads: Option<usize>,
     ) -> Result<Self, ModelError> {
         let (mesh, ignored) = MeshModel::new(scene, deck)?;
+        Ok(Self { ignored, ..Self::from_mesh(scene, mesh, threads)? })
+    }
+
+    /// Builds the model of a scene on a mesh that is there.
+    ///
+    /// # Errors
+    /// As [`RopeModel::new`].
+    pub fn from_mesh(scene: &Scene, mesh: MeshModel, threads: Option<usize>) -> Result<Self, ModelError> {
         let (model, contact_cells) = match mesh.slice {
             Some(shape) => slice_model(scene, &mesh, &shape)?,
             None => whole_model(scene, &mesh)?,
@@ -94,7 +102,7 @@ impl RopeModel {
         let half_cycles = program.steps.iter().map(|s| CycleStep::of(scene, s, kinematics)).collect();
         let threads = threads.or(scene.solver.threads).unwrap_or_else(default_threads);
         let analysis = Analysis::new(model, newton(scene), solver_options(), threads);
-        Ok(Self { mesh, analysis, steps, half_cycles, ignored, contact_cells })
+        Ok(Self { mesh, analysis, steps, half_cycles, ignored: Vec::new(), contact_cells })
     }
 }
 

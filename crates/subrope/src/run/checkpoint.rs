@@ -63,13 +63,7 @@ impl Checkpoints {
     }
 
     /// Writes one.
-    pub fn write(
-        &mut self,
-        output: &mut Output,
-        analysis: &Analysis,
-        stable: bool,
-        elapsed: Elapsed,
-    ) -> Result<(), IoError> {
+    pub fn write(&mut self, output: &mut Output, analysis: &Analysis, elapsed: Elapsed) -> Result<(), IoError> {
         let start = Instant::now();
         let mut file = CheckpointWriter::create(&self.path, &self.writes)?;
         for (name, text) in [("version", VERSION), ("scene", &self.scene)] {
@@ -77,7 +71,6 @@ impl Checkpoints {
         }
         let (Reading { wall, cpu }, own) = (elapsed.solving, elapsed.checkpoints);
         file.numbers("elapsed", 4, &mut [elapsed.total, wall, cpu.unwrap_or(f64::NAN), own].into_iter())?;
-        file.counts("stable", 1, &mut std::iter::once(u64::from(stable)))?;
         output.save(&mut file)?;
         self.save(analysis, &mut file)?;
         file.commit()?;
@@ -145,16 +138,16 @@ impl Found {
         analysis.restore(&FromFile(&self.reader)).map_err(|cause| RestartError::State { cause: Box::new(cause) })
     }
 
-    /// Time that was spent before, and whether the branch was stable.
+    /// Time that was spent before.
     ///
     /// # Errors
     /// [`IoError`].
-    pub fn before(&self) -> Result<(Elapsed, bool), IoError> {
+    pub fn before(&self) -> Result<Elapsed, IoError> {
         let mut elapsed = [0.0; 4];
         self.reader.read_numbers("elapsed", &mut elapsed)?;
         let [total, wall, cpu, checkpoints] = elapsed;
         let solving = Reading { wall, cpu: Some(cpu).filter(|c| !c.is_nan()) };
-        Ok((Elapsed { total, solving, checkpoints }, self.reader.counts("stable")? != [0]))
+        Ok(Elapsed { total, solving, checkpoints })
     }
 }
 

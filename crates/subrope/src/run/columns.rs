@@ -14,7 +14,7 @@ const REACTIONS: [(&str, &str); 6] =
 
 const HEAD: [(&str, &str); 5] =
     [("time", "s"), ("step", "-"), ("increment", "-"), ("step_fraction", "-"), ("increment_length", "-")];
-const ENERGIES: [(&str, &str); 8] = [
+const ENERGIES: [(&str, &str); 9] = [
     ("external_work", "mJ"),
     ("stored_energy", "mJ"),
     ("dissipated_transverse", "mJ"),
@@ -23,6 +23,7 @@ const ENERGIES: [(&str, &str); 8] = [
     ("dissipated_longitudinal_midpoint", "mJ"),
     ("stabilising_work", "mJ"),
     ("energy_error", "-"),
+    ("released_energy", "mJ"),
 ];
 const COUNTS: [(&str, &str); 4] = [("iterations", "-"), ("cutbacks", "-"), ("residual", "-"), ("negative_pivots", "-")];
 
@@ -95,6 +96,7 @@ pub fn row(mesh: &MeshModel, analysis: &Analysis, record: &IncrementRecord, cutb
         totals.dissipated_mid[1],
         totals.stabilising,
         totals.energy_error(),
+        totals.released,
         record.iterations as f64,
         cutbacks as f64,
         record.residual().unwrap_or(0.0),

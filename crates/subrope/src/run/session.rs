@@ -32,8 +32,6 @@ pub struct Session<'a> {
     checkpoints: Checkpoints,
     writes: Writes,
     stopwatch: Stopwatch,
-    /// Whether the branch is stable so far.
-    stable: bool,
     /// Whether a step goes on.
     resumed: bool,
 }
@@ -82,8 +80,8 @@ impl<'a> Session<'a> {
     ) -> Result<Self, Error> {
         let writes = options.writes.cloned().unwrap_or_default();
         let mut session = Self::with_files(file, model, folder, (clock, &writes, Some(&found.reader)))?;
-        let (before, stable) = found.before().map_err(|error| RunError::from(RestartError::Checkpoint(error)))?;
-        (session.stopwatch.before, session.stable, session.resumed) = (Some(before), stable, true);
+        let before = found.before().map_err(|error| RunError::from(RestartError::Checkpoint(error)))?;
+        (session.stopwatch.before, session.resumed) = (Some(before), true);
         Ok(session)
     }
 
@@ -124,7 +122,6 @@ impl<'a> Session<'a> {
             output,
             writes: writes.clone(),
             stopwatch: Stopwatch { started: Instant::now(), clock, before: None },
-            stable: true,
             resumed: false,
         })
     }
@@ -136,7 +133,7 @@ impl<'a> Session<'a> {
         interrupt: Option<&AtomicBool>,
         observer: &mut dyn Observer,
     ) -> Result<RunOutcome, Error> {
-        let Self { file, files, output, checkpoints, writes, stopwatch, stable, resumed } = self;
+        let Self { file, files, output, checkpoints, writes, stopwatch, resumed } = self;
         let RopeModel { mesh, contact_cells, analysis, steps, half_cycles, .. } = &mut *model;
         let scenery = Scenery { mesh, cells: contact_cells };
         let mut watch = Watch {
@@ -149,13 +146,13 @@ impl<'a> Session<'a> {
             stopwatch,
             attempt_start: stopwatch.started,
             cutbacks: 0,
-            stable,
             half_cycle: None,
             resumed,
         };
         let outcome = watch.run_steps(analysis, (steps, half_cycles));
         let elapsed = stopwatch.read(watch.checkpoints.seconds());
         watch.tell_lost_frames();
+        watch.tell_long_increments(analysis);
         let Watch { output, checkpoints, failure, .. } = watch;
         let cycles = output.cycles.rows().to_vec();
         let closed = output.close(scenery, analysis);
@@ -223,8 +220,6 @@ struct Watch<'a> {
     stopwatch: Stopwatch,
     attempt_start: Instant,
     cutbacks: usize,
-    /// Whether the last converged tangent had no negative pivot.
-    stable: bool,
     /// The half cycle that runs.
     half_cycle: Option<CycleStep>,
     /// Whether the step that comes goes on.
@@ -262,6 +257,16 @@ impl Watch<'_> {
         }
     }
 
+    /// Tells when increments were too long for a balance of energy.
+    fn tell_long_increments(&mut self, analysis: &Analysis) {
+        if analysis.totals().is_unresolved() {
+            self.observer.on_warning(
+                &"the energy balances of long increments leave more than 5 % of all work open: whether the structure snapped \
+                  in one of them, shorter ones tell (increments.maximum)",
+            );
+        }
+    }
+
     fn keep<T>(&mut self, result: Result<T, IoError>) -> Result<T, FemError> {
         result.map_err(|error| {
             let text = error.to_string();
@@ -287,17 +292,27 @@ impl Watch<'_> {
         self.keep(result)
     }
 
-    /// Warns when the branch that is followed becomes unstable.
-    fn tell_stability(&mut self, record: &IncrementRecord) {
-        let negative = record.negative_pivots.unwrap_or(0);
-        if negative > 0 && self.stable {
+    /// Tells of limit and bifurcation points and of snaps.
+    fn tell_findings(&mut self, record: &IncrementRecord) {
+        let at = format!("at {} s (increment {} of step {})", record.time, record.increment, record.step);
+        if let Some((before, now)) = record.inertia_change {
+            let meaning = match now > before {
+                true => "a limit or bifurcation point was passed, and the unstable branch is followed",
+                false => "a limit or bifurcation point was passed",
+            };
             self.observer.on_warning(&format!(
-                "from increment {} on the tangent has {negative} negative pivot(s): a limit or bifurcation point was \
-                 passed, and the unstable branch is followed (history.csv, negative_pivots)",
-                record.increment
+                "inertia changed from {before} to {now} negative pivot(s) {at}: {meaning} (history.csv, negative_pivots)"
             ));
         }
-        self.stable = negative == 0;
+        let energy = record.released;
+        if energy != 0.0 {
+            let what = if energy > 0.0 { "released" } else { "appeared" };
+            self.observer.on_warning(&format!(
+                "snap {at}: {:.4e} mJ {what} that forces and sliding do not account for: the state is on another branch \
+                 (history.csv, released_energy)",
+                energy.abs()
+            ));
+        }
     }
 
     fn tell(&mut self, record: &IncrementRecord, outcome: Outcome) {
@@ -326,11 +341,11 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
         self.cutbacks = 0;
         self.keep(result)?;
         self.tell(record, Outcome::Converged);
-        self.tell_stability(record);
+        self.tell_findings(record);
         let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if self.checkpoints.is_due(analysis.totals().increments, stop) {
             let elapsed = self.stopwatch.read(self.checkpoints.seconds());
-            let result = self.checkpoints.write(&mut self.output, analysis, self.stable, elapsed);
+            let result = self.checkpoints.write(&mut self.output, analysis, elapsed);
             self.keep(result)?;
         }
         Ok(if stop { Control::Stop } else { Control::Continue })

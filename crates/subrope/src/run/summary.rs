@@ -153,6 +153,11 @@ pub struct EnergySummary {
     pub interference_mj: f64,
     /// External work less everything else, over the external work.
     pub energy_error: f64,
+    /// Released in snaps, as far as increments are short enough to tell, less what appeared; part of the energy error.
+    pub released_mj: f64,
+    /// What the balances of all other increments leave open, added up without sign: where it is much beside the work,
+    /// increments are too long to tell a snap.
+    pub open_mj: f64,
 }
 
 /// Sizes.
@@ -199,6 +204,10 @@ pub struct CountSummary {
     pub searches: usize,
     /// Converged increments whose tangent has negative pivots: unstable equilibria.
     pub unstable_increments: usize,
+    /// Converged increments at which the number of negative pivots changed: limit and bifurcation points.
+    pub inertia_changes: usize,
+    /// Converged increments with a snap.
+    pub jumps: usize,
 }
 
 /// What took how long.
@@ -372,6 +381,8 @@ fn energies(model: &RopeModel) -> EnergySummary {
         contact_stored_mj: t.contact_stored,
         interference_mj: t.interference,
         energy_error: t.energy_error(),
+        released_mj: t.released,
+        open_mj: t.open,
     }
 }
 
@@ -403,6 +414,8 @@ fn counts(model: &RopeModel) -> CountSummary {
         augmentations: t.augmentations,
         searches: t.searches,
         unstable_increments: t.unstable_increments,
+        inertia_changes: t.inertia_changes,
+        jumps: t.jumps,
     }
 }
 

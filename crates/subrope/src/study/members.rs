@@ -1,5 +1,6 @@
 //! Members of a study: every series written out, every level with its scene.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::file::{Series, Study};
@@ -53,7 +54,7 @@ pub(super) fn expand(
     let mut problems = Vec::new();
     for (index, series) in study.series.iter().enumerate() {
         let at = Location::root().at("series").at(index);
-        for combination in combinations(series) {
+        for combination in combinations(&series.each) {
             let name = family_name(series, &combination);
             let family = out.families.len();
             let mut members = Vec::new();
@@ -90,14 +91,15 @@ pub(super) fn expand(
     Ok(out)
 }
 
-fn listed(settings: &std::collections::BTreeMap<String, Setting>) -> Vec<(String, Setting)> {
+/// Keys and values in the order in which they are put.
+pub(crate) fn listed(settings: &BTreeMap<String, Setting>) -> Vec<(String, Setting)> {
     settings.iter().map(|(key, value)| (key.clone(), value.clone())).collect()
 }
 
 /// Every combination of the values of `each`; one without any when there are none.
-fn combinations(series: &Series) -> Vec<Vec<(String, Setting)>> {
+pub(crate) fn combinations(each: &BTreeMap<String, Vec<Setting>>) -> Vec<Vec<(String, Setting)>> {
     let mut out = vec![Vec::new()];
-    for (key, list) in &series.each {
+    for (key, list) in each {
         let with = |before: &Vec<_>, value: &Setting| {
             let mut longer = before.clone();
             longer.push((key.clone(), value.clone()));

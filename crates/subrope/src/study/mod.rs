@@ -33,6 +33,7 @@ pub use front::{Bound, CostAt, Ratio, cheapest, cost_at, pareto};
 pub use machine::Machine;
 pub use markdown::answers;
 pub use members::{Family, Member};
+pub(crate) use members::{combinations, listed};
 pub use order::{Extrapolated, NotExtrapolated, observed, richardson};
 pub use quantity::{Known, Missing, Over, Part, Source, known, names};
 pub use report::{
@@ -48,6 +49,8 @@ use subrope_io::atomic::write_atomically;
 use subrope_io::{IoError, write_json};
 
 use crate::Error;
+pub(crate) use table::line as csv_line;
+
 use reduce::{Asked, reduce};
 use rounds::{Rounds, Runs};
 

@@ -75,7 +75,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// A line of comma-separated fields (RFC 4180).
-fn line(fields: &[String]) -> String {
+pub(crate) fn line(fields: &[String]) -> String {
     let mut out = String::new();
     for (index, field) in fields.iter().enumerate() {
         if index > 0 {
