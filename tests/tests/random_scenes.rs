@@ -15,7 +15,7 @@ const CASES: u64 = 100;
 
 /// How far the same scene written down otherwise may differ: Newton stops at a residual of 1e-11, and what differs then is
 /// divided by the softest direction.
-const SAME: f64 = 1e-7;
+const SAME: f64 = 1e-10;
 
 /// Formulations in a scene, with their bricks.
 const BRICKS: [(&str, CellKind); 6] = [
@@ -206,7 +206,8 @@ impl Outcome {
 
 #[test]
 fn a_hundred_scenes_however_written_down() {
-    let folder = tempfile::tempdir().unwrap();
+    // Decks are flushed to the disk; where there is a disk in memory that takes no time.
+    let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
     let mut worst = Worst::default();
     let (mut slid, mut done, mut skipped) = (0, 0, 0);
     for seed in 0.. {
@@ -234,7 +235,7 @@ fn a_hundred_scenes_however_written_down() {
             assert!(differs < SAME, "case {seed}, {}: {name} differs by {differs:e}", case.formulation);
         }
         worst.see("energy balance", plain.open);
-        assert!(plain.open < 0.1, "case {seed}, {}: energy off by {:e}", case.formulation, plain.open);
+        assert!(plain.open < 0.05, "case {seed}, {}: energy off by {:e}", case.formulation, plain.open);
         assert!(!plain.falls, "case {seed}: dissipation falls");
         slid += u64::from(plain.energies[1] > 1e-3 * plain.energies[0]);
         done += 1;
