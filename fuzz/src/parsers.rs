@@ -64,10 +64,12 @@ pub fn scene(data: &[u8]) {
         }
     }
     // Strands of a rope that touch take a search, a hundred times the rest.
-    if file.scene.strand.is_some() && size.elements <= FEW && size.steps <= FEW {
-        if let Err(error) = RopeModel::new(&file, Some(1)) {
-            told(&error.to_string());
-        }
+    if file.scene.strand.is_some()
+        && size.elements <= FEW
+        && size.steps <= FEW
+        && let Err(error) = RopeModel::new(&file, Some(1))
+    {
+        told(&error.to_string());
     }
 }
 

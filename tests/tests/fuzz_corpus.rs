@@ -29,7 +29,7 @@ fn run(target: &str, parse: fn(&[u8])) -> usize {
 
 #[test]
 fn scenes() {
-    assert!(run("scene", parsers::scene) > 16);
+    assert!(run("scene", parsers::scene) > 15);
 }
 
 #[test]

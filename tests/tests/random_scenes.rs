@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use nalgebra::{Matrix3, Vector3};
+use subrope_fem::FemError;
 use subrope_geometry::{CellKind, Mesh};
 use subrope_io::{DeckView, NumberFormat, write_deck};
 use subrope_material::testkit::Numbers;
@@ -14,7 +15,7 @@ const CASES: u64 = 100;
 
 /// How far the same scene written down otherwise may differ: Newton stops at a residual of 1e-11, and what differs then is
 /// divided by the softest direction.
-const SAME: f64 = 1e-7;
+const SAME: f64 = 1e-10;
 
 /// Formulations in a scene, with their bricks.
 const BRICKS: [(&str, CellKind); 6] = [
@@ -144,25 +145,31 @@ impl Case {
         )
     }
 
-    fn run(&self, folder: &Path) -> Outcome {
+    /// `None` where Newton does not converge within increments that must not be cut.
+    fn run(&self, folder: &Path) -> Option<Outcome> {
         let deck = folder.join("deck.inp");
         let frames: Vec<_> = self.frames.iter().copied().map(Some).collect();
         write_deck(&deck, &DeckView { frames: &frames, ..DeckView::of_mesh(&self.mesh) }, NumberFormat::RoundTrip)
             .unwrap();
-        let text = self.text();
-        let run = try_run(&text, Some(&deck), 1).unwrap().unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let run = match try_run(&self.text(), Some(&deck), 1).unwrap() {
+            Ok(run) => run,
+            Err(error) if error.is_recoverable() || matches!(error, FemError::FixedIncrementFailed { .. }) => {
+                return None;
+            }
+            Err(error) => panic!("{error}"),
+        };
         let end = run.point("END_B");
         let row = run.rows.last().unwrap();
         let lost = |row: &subrope_tests::Row| row.totals.dissipated;
         let falls = run.rows.windows(2).any(|two| (0..2).any(|mode| lost(&two[1])[mode] < lost(&two[0])[mode]));
-        Outcome {
+        Some(Outcome {
             force: row.reaction[end][0],
             moment: row.reaction[end][1],
             motion: row.motion[end][0],
             energies: [row.totals.stored, row.totals.dissipated_mid[0] + row.totals.dissipated_mid[1]],
             open: row.totals.energy_error().abs(),
             falls,
-        }
+        })
     }
 }
 
@@ -199,29 +206,40 @@ impl Outcome {
 
 #[test]
 fn a_hundred_scenes_however_written_down() {
-    let folder = tempfile::tempdir().unwrap();
+    // Decks are flushed to the disk; where there is a disk in memory that takes no time.
+    let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
     let mut worst = Worst::default();
-    let mut slid = 0;
-    for seed in 0..CASES {
+    let (mut slid, mut done, mut skipped) = (0, 0, 0);
+    for seed in 0.. {
+        if done == CASES {
+            break;
+        }
         let mut numbers = Numbers::new(!seed);
         let case = Case::new(seed);
-        let plain = case.run(folder.path());
+        let Some(plain) = case.run(folder.path()) else {
+            // Fixed increments may be too long for a scene; that another way of writing it converges says nothing.
+            skipped += 1;
+            assert!(skipped <= CASES / 5, "{skipped} scenes do not converge");
+            continue;
+        };
         let (same, q) = (Matrix3::identity(), numbers.rotation());
         let others = [
-            ("renumbered", case.renumbered(&mut numbers).run(folder.path()), same),
-            ("permuted bricks", case.permuted().run(folder.path()), same),
-            ("turned", case.turned(&q).run(folder.path()), q),
+            ("renumbered", case.renumbered(&mut numbers), same),
+            ("permuted bricks", case.permuted(), same),
+            ("turned", case.turned(&q), q),
         ];
         for (name, other, q) in &others {
-            let differs = plain.differs(other, q);
+            let other = other.run(folder.path()).unwrap_or_else(|| panic!("case {seed}: {name} does not converge"));
+            let differs = plain.differs(&other, q);
             worst.see(name, differs);
             assert!(differs < SAME, "case {seed}, {}: {name} differs by {differs:e}", case.formulation);
         }
         worst.see("energy balance", plain.open);
-        assert!(plain.open < 0.1, "case {seed}, {}: energy off by {:e}", case.formulation, plain.open);
+        assert!(plain.open < 0.05, "case {seed}, {}: energy off by {:e}", case.formulation, plain.open);
         assert!(!plain.falls, "case {seed}: dissipation falls");
-        slid += usize::from(plain.energies[1] > 1e-3 * plain.energies[0]);
+        slid += u64::from(plain.energies[1] > 1e-3 * plain.energies[0]);
+        done += 1;
     }
-    println!("{worst}; friction in {slid} of {CASES}");
-    assert!(slid > CASES as usize / 2, "friction in {slid} cases only");
+    println!("{worst}; friction in {slid} of {CASES}, {skipped} skipped");
+    assert!(slid > CASES / 2, "friction in {slid} cases only");
 }

@@ -11,6 +11,8 @@
 //! are linear in the positions of their nodes. The gap is negative in penetration; pressure, traction and friction work
 //! count per reference area of the secondary surface.
 
+#![forbid(unsafe_code)]
+
 mod contact;
 mod error;
 pub mod foot;

@@ -12,6 +12,8 @@
 //!
 //! Lengths are in mm, angles in radians, everything is in the reference configuration.
 
+#![forbid(unsafe_code)]
+
 pub mod axis;
 mod check;
 pub mod error;

@@ -3,6 +3,8 @@
 //! The crate takes and gives plain data (meshes, frames, slices of numbers); it knows no element and no solver.
 //! Every failure is an [`IoError`], whose [`class`](IoError::class) tells a wrong input from a failed output.
 
+#![forbid(unsafe_code)]
+
 pub mod atomic;
 pub mod checkpoint;
 pub mod cpu;

@@ -8,6 +8,8 @@
 //! Units: mm, N, MPa, mJ, s, K. Symmetric tensors are [`mandel`] vectors in the material frame, whose first axis is the
 //! fibre.
 
+#![forbid(unsafe_code)]
+
 mod bundle;
 pub mod driver;
 mod elastic;

@@ -159,17 +159,15 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         committed: &[f64],
     ) -> FemError {
         let label = self.labels[element];
-        let (point, source, gradient, mean_elongation) = match failure {
-            ElementFailure::Law { point, source, gradient, mean_elongation } => {
-                (point, source, gradient, mean_elongation)
-            }
+        let (point, source, at) = match failure {
+            ElementFailure::Law { point, source, at } => (point, source, at),
             ElementFailure::MeanVolume(ratio) => return FemError::MeanVolume { element: label, ratio },
         };
         let geometry = &input.points[point];
         let before = mixed_gradient(&self.gather(element, committed), &geometry.gradient);
         let asked = FailedPoint {
-            gradient: Matrix3::from_fn(|i, j| gradient[i][j]),
-            mean_elongation,
+            gradient: Matrix3::from_fn(|i, j| at.gradient[i][j]),
+            mean_elongation: at.mean_elongation,
             committed_gradient: geometry.frame.tr_mul(&before),
             frame: geometry.frame,
             state: self.state(element, point).to_vec(),

@@ -37,13 +37,20 @@ pub enum ElementFailure {
         point: usize,
         /// Why.
         source: LawError,
-        /// Displacement gradient that it was asked at \[-\].
-        gradient: [[f64; 3]; 3],
-        /// Mean elongation that it was asked at \[-\].
-        mean_elongation: Option<f64>,
+        /// What it was asked at.
+        at: Box<PointStrain>,
     },
     /// The mean volume ratio is not positive.
     MeanVolume(f64),
+}
+
+/// The strain that a law was asked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointStrain {
+    /// Displacement gradient in the fibre frame \[-\].
+    pub gradient: [[f64; 3]; 3],
+    /// Mean elongation \[-\], for an element that averages it.
+    pub mean_elongation: Option<f64>,
 }
 
 impl ElementFailure {
@@ -56,12 +63,11 @@ impl ElementFailure {
         mean_elongation: Option<Wide<S>>,
     ) -> Self {
         let LaneFailure { lane, source } = failure;
-        Self::Law {
-            point: first + lane,
-            source,
+        let at = PointStrain {
             gradient: gradient.map(|row| row.map(|entry| entry.to_array()[lane])),
             mean_elongation: mean_elongation.map(|mean| mean.to_array()[lane]),
-        }
+        };
+        Self::Law { point: first + lane, source, at: Box::new(at) }
     }
 }
 

@@ -13,7 +13,7 @@ mod wide;
 
 pub use block::{SolidBlock, SolidMesh};
 pub use failure::FailedPoint;
-pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full};
+pub use formulation::{ElementFailure, ElementInput, ElementResult, Formulation, Full, PointStrain};
 pub use kernel::{NodeMatrix, NodeVector, PointGeometry, PointProducts};
 pub use mean_elongation::MeanElongation;
 pub use mean_volume::MeanVolume;

@@ -8,7 +8,7 @@ use subrope_material::lanes::MAX_LANES;
 use subrope_material::{Law, LawError, StateVariable, StrainModes, mandel};
 
 use super::SolidBlock;
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PointStrain};
 use crate::FemError;
 use crate::contribution::{Energies, Request};
 
@@ -170,7 +170,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
 /// A point whose deformation has no strain modes.
 fn no_modes(point: usize, source: LawError, gradient: &Matrix3<f64>) -> ElementFailure {
     let gradient = std::array::from_fn(|i| std::array::from_fn(|j| gradient[(i, j)]));
-    ElementFailure::Law { point, source, gradient, mean_elongation: None }
+    ElementFailure::Law { point, source, at: Box::new(PointStrain { gradient, mean_elongation: None }) }
 }
 
 /// One element outside of an assembly.
