@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use subrope_tests::{Run, relative, try_run};
+use subrope::plan::Plan;
+use subrope_tests::{Run, relative, scene, try_run};
 
 /// A strand thick enough for its factors to cost more than twenty solutions.
 fn strand(law: &str, angle: f64, keep: bool) -> String {
@@ -10,12 +11,12 @@ fn strand(law: &str, angle: f64, keep: bool) -> String {
         r#"title = "thick strand"
 [strand]
 radius = 2.785
-length = 8.0
+length = 12.0
 surface_angle = 30.0
 [strand.mesh]
 core = 8
 rings = 4
-layers = 8
+layers = 12
 [element]
 formulation = "hex8"
 {law}
@@ -61,6 +62,10 @@ fn fewer_factorisations_give_the_same_answer() {
             with.iterations, with.factorisations, with.linear_iterations, without.iterations, without.factorisations
         );
         assert!(kept.model.analysis.keeps_factors() && !renewed.model.analysis.keeps_factors());
+        // The plan says so.
+        let plan = |run: &Run| Plan::new(&scene(&strand(law, angle, true)), &run.model).to_string();
+        assert!(plan(&kept).contains("factors serve later iterations by GMRES"), "{}", plan(&kept));
+        assert!(!plan(&renewed).contains("factors serve"), "{}", plan(&renewed));
         assert!(with.factorisations < without.factorisations, "{name}");
         assert!(with.iterations <= without.iterations + 3, "{name}");
         assert!(relative(moment(&kept), moment(&renewed)) < 1e-7, "{name}");

@@ -181,9 +181,16 @@ fn a_snap_is_told() {
     assert!(damped.energy_error().abs() < 0.01 && damped.stabilising > 0.1 * damped.work_scale);
     assert!(!damped.is_unresolved());
     let once = "initial = 1.0, maximum = 1.0";
-    let jumped = totals(&ARCH.replace("initial = 0.01, maximum = 0.01", once));
-    assert!(jumped.energy_error().abs() > 0.1, "it did not jump");
-    assert!(jumped.jumps > 0 || jumped.is_unresolved());
+    // Where Newton's method goes from there hangs on roundings: to the other side, or nowhere.
+    match try_run(&ARCH.replace("initial = 0.01, maximum = 0.01", once), None, 1) {
+        Ok(Ok(run)) => {
+            let jumped = run.model.analysis.totals();
+            assert!(jumped.energy_error().abs() > 0.1, "it did not jump");
+            assert!(jumped.jumps > 0 || jumped.is_unresolved());
+        }
+        Ok(Err(error)) => assert!(error.to_string().contains("step push through"), "{error}"),
+        Err(error) => panic!("{error}"),
+    }
 }
 
 /// Short increments up to the largest load: the tangent becomes singular, and the run says so before it ends there.

@@ -40,7 +40,8 @@ pub fn read_bytes(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read_bytes`]; [`ErrorKind::InvalidData`] for other bytes.
 pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
-    String::from_utf8(read_bytes(path, limit)?).map_err(|e| io::Error::new(ErrorKind::InvalidData, e.utf8_error()))
+    String::from_utf8(read_bytes(path, limit)?)
+        .map_err(|e| io::Error::new(ErrorKind::InvalidData, format!("it is not text in UTF-8: {}", e.utf8_error())))
 }
 
 #[cfg(test)]

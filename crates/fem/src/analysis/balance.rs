@@ -2,7 +2,9 @@
 //!
 //! Work of the external forces less what is stored and dissipated,
 //!
-//!     delta = W - dU - D,
+//! ```text
+//! delta = W - dU - D,
+//! ```
 //!
 //! vanishes with the increment where equilibrium changes gradually. Where the structure jumps it does not: what is missing
 //! is the energy that a body with mass would carry off as motion; what is too much (`delta < 0`) came from nowhere, since
@@ -11,7 +13,9 @@
 //! change of the second-order work `s = sum dF dq` against that of the last increment, lengths allowed for; mid-point
 //! dissipation is as sure as its distance from the end value. More than all of this together is a jump:
 //!
-//!     |delta| > 1/2 sum |dF dq| + 1/2 |s - s_last (h/h_last)^2| + |D_end - D_mid| + (D_contact + D_viscous)/2.
+//! ```text
+//! |delta| > 1/2 sum |dF dq| + 1/2 |s - s_last (h/h_last)^2| + |D_end - D_mid| + (D_contact + D_viscous)/2.
+//! ```
 //!
 //! A long increment has wide bounds and can hide a jump. What all increments leave open within their bounds is added up:
 //! where it comes to more than a twentieth of all work, the balance cannot tell, and shorter increments find out.
