@@ -51,7 +51,7 @@ pub enum StressError {
         /// The key.
         key: String,
         /// Why.
-        fault: SettingFault,
+        fault: Box<SettingFault>,
     },
     /// Lists of a family have different lengths.
     #[error(

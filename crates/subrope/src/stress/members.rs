@@ -90,7 +90,7 @@ fn text(
     let mut table = base.clone();
     for (key, value) in settings {
         let put = KeyPath::parse(&key).and_then(|path| path.put(&mut table, &value.0));
-        put.map_err(|fault| StressError::Setting { family: family.name.clone(), key, fault })?;
+        put.map_err(|fault| StressError::Setting { family: family.name.clone(), key, fault: Box::new(fault) })?;
     }
     Ok(table.to_string())
 }
