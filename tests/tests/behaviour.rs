@@ -185,18 +185,16 @@ fn one_inverted_brick_is_named_by_its_number() {
         std::fs::write(&file, deck_with_inverted(labels)).unwrap();
         let error = RopeModel::from_scene(&scene(&deck_scene("inverted.inp")), Some(&file), Some(1)).err().unwrap();
         println!("{error}");
-        let ModelError::DeckMesh { cause: GeometryError::Inverted { cell_label, determinant }, .. } = &error else {
-            panic!("{error:?}")
-        };
+        let ModelError::DeckMesh { cause, .. } = &error else { panic!("{error}") };
+        let GeometryError::Inverted { cell_label, determinant } = cause.as_ref() else { panic!("{error:?}") };
         assert_eq!(*cell_label, labels[0]);
         assert!(*determinant < 0.0);
         assert!(error.to_string().contains(&labels[0].to_string()), "{error}");
     }
     std::fs::write(&file, deck_with_inverted(&[5, 44, 123])).unwrap();
     let error = RopeModel::from_scene(&scene(&deck_scene("inverted.inp")), Some(&file), Some(1)).err().unwrap();
-    let ModelError::DeckMesh { cause: GeometryError::InvertedCells { cell_labels, .. }, .. } = &error else {
-        panic!("{error:?}")
-    };
+    let ModelError::DeckMesh { cause, .. } = &error else { panic!("{error}") };
+    let GeometryError::InvertedCells { cell_labels, .. } = cause.as_ref() else { panic!("{error:?}") };
     assert_eq!(cell_labels, &[5, 44, 123]);
 }
 

@@ -33,7 +33,7 @@ pub enum ModelError {
         path: PathBuf,
         /// What is wrong.
         #[source]
-        cause: GeometryError,
+        cause: Box<GeometryError>,
     },
     /// The deck cannot be read.
     #[error(transparent)]

@@ -110,7 +110,7 @@ impl MeshModel {
         }
         mesh.validate()
             .and_then(|()| quality::check_orientation(&mesh))
-            .map_err(|cause| ModelError::DeckMesh { path: path.to_path_buf(), cause })?;
+            .map_err(|cause| ModelError::DeckMesh { path: path.to_path_buf(), cause: Box::new(cause) })?;
         let frames = match &entry.fibres {
             Fibres::Deck => fibre_frames(&mesh, &per_cell(&mesh, &deck.frames)?)?,
             Fibres::Parallel(direction) => fibre_frames(&mesh, &Parallel::new(frame_along(direction)?)?)?,
