@@ -64,9 +64,10 @@ impl Totals {
     }
 
     /// `W - U - D` with mid-point dissipation \[mJ\].
-    fn missing(&self) -> f64 {
+    pub(super) fn missing(&self) -> f64 {
+        let kept = self.stored + self.contact_stored;
         let lost = self.dissipated_mid.iter().sum::<f64>() + self.contact_friction + self.stabilising;
-        self.external_work - self.stored - self.contact_stored - lost
+        self.external_work - kept - lost
     }
 }
 

@@ -91,10 +91,7 @@ impl Totals {
     /// with mid-point dissipation.
     #[must_use]
     pub fn energy_error(&self) -> f64 {
-        let kept = self.stored + self.contact_stored;
-        let lost = self.dissipated_mid.iter().sum::<f64>() + self.contact_friction + self.stabilising;
-        let balance = self.external_work - kept - lost;
-        if self.work_scale == 0.0 { 0.0 } else { balance / self.work_scale }
+        if self.work_scale == 0.0 { 0.0 } else { self.missing() / self.work_scale }
     }
 }
 
