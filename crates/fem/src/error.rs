@@ -32,6 +32,17 @@ pub enum FemError {
     /// The residual holds a number that is not finite.
     #[error("the residual is not finite: shorten the increment")]
     NonFiniteResidual,
+    /// An iterate has left the model by orders of magnitude: the tangent is singular but for rounding.
+    #[error(
+        "a node moves by {displacement:e} mm, and the model measures {extent:e} mm: nothing holds a part, or not any more; \
+         hold it, or shorten the increment"
+    )]
+    RunsAway {
+        /// Largest component of a nodal displacement \[mm\].
+        displacement: f64,
+        /// Diagonal of the box around the model \[mm\].
+        extent: f64,
+    },
     /// Surfaces touch where the pattern of the matrix has no place for them.
     #[error("surfaces touch outside the candidates of the search: search again")]
     SearchOutdated,
@@ -222,6 +233,7 @@ impl FemError {
             Self::Law { source, .. } => !matches!(source, LawError::Parameter { .. } | LawError::NoFibreTerm),
             Self::MeanVolume { .. }
             | Self::NonFiniteResidual
+            | Self::RunsAway { .. }
             | Self::SearchOutdated
             | Self::Linear(_)
             | Self::NotConverged { .. } => true,

@@ -4,8 +4,10 @@ use nalgebra::{Rotation3, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use subrope_fem::Request;
 use subrope_fem::solid::{
-    ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume, PointGeometry, Wide,
+    BrickGeometry, Buffers, ElementFailure, ElementInput, ElementResult, Formulation, Full, MeanElongation, MeanVolume,
+    PointGroup, ReferenceGradients, Wide,
 };
+use subrope_geometry::{Hex8, Hexahedron};
 use subrope_material::lanes::{Lanes, MAX_LANES};
 use subrope_material::testkit::Numbers;
 use subrope_material::{
@@ -165,32 +167,32 @@ impl<F: Formulation<8>> WithSimd for Element<'_, F> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let mut out = ElementResult::zero(8);
         let mut new = vec![0.0; self.input.old.len()];
-        let mut product = [[[0.0; 8]; 3]; MAX_LANES];
-        let done = F::evaluate::<BundleLaw, S, false>(simd, self.input, &mut new, &mut product, &mut out);
+        let mut buffers = Buffers::zero(simd);
+        let done = F::evaluate::<BundleLaw, S, false>(simd, self.input, &mut new, &mut buffers, &mut out);
         (done, out, new)
     }
 }
 
-/// Eight points with random gradients: no brick, but an algebra that must agree.
-fn points(numbers: &mut Numbers) -> Vec<PointGeometry<8>> {
-    let frame = Rotation3::from_scaled_axis(Vector3::new(0.3, -0.8, 0.4)).into_inner();
-    let mut point = || PointGeometry {
-        gradient: std::array::from_fn(|_| std::array::from_fn(|_| numbers.signed())),
-        frame,
-        volume: 1.0 + 0.5 * numbers.signed(),
-    };
-    (0..8).map(|_| point()).collect()
+/// A distorted brick with fibres askew.
+fn brick(reference: &ReferenceGradients<8>, numbers: &mut Numbers) -> Vec<PointGroup> {
+    let x = Hex8::NODES.map(|node| Vector3::from(node) + Vector3::from_fn(|_, _| 0.2 * numbers.signed()));
+    let frames: Vec<_> =
+        (0..8).map(|_| Rotation3::from_scaled_axis(Vector3::from_fn(|_, _| numbers.signed())).into_inner()).collect();
+    let mut groups = Vec::new();
+    reference.add_brick::<Hex8>(&x, &frames, 1, &mut groups).unwrap();
+    groups
 }
 
 fn compare_elements<F: Formulation<8>>(laws: &[BundleLaw]) {
     let mut numbers = Numbers::new(11);
+    let reference = ReferenceGradients::new::<Hex8>();
     for law in laws {
         for _ in 0..20 {
-            let points = points(&mut numbers);
+            let groups = brick(&reference, &mut numbers);
             let old = vec![0.0; 8 * law.state_len()];
             let input = ElementInput {
                 law,
-                points: &points,
+                brick: BrickGeometry::new(&reference, &groups),
                 displacement: std::array::from_fn(|_| std::array::from_fn(|_| 0.02 * numbers.signed())),
                 old: &old,
                 time_increment: 1.0,

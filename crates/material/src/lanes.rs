@@ -162,11 +162,18 @@ fn log_near<V: Lanes>(x: V) -> V {
 #[inline(always)]
 pub(crate) fn finite<V: Lanes>(numbers: &[V]) -> V::Mask {
     let zero = numbers[0].splat(0.0);
-    let mut sum = zero;
-    for number in numbers {
-        sum = number.mul_add(zero, sum);
+    // Sums that do not wait for each other.
+    let mut sums = [zero; 4];
+    let (fours, rest) = numbers.as_chunks::<4>();
+    for four in fours {
+        for i in 0..4 {
+            sums[i] = four[i].mul_add(zero, sums[i]);
+        }
     }
-    sum.equal(zero)
+    for number in rest {
+        sums[0] = number.mul_add(zero, sums[0]);
+    }
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])).equal(zero)
 }
 
 /// `J - 1 = tr H + (tr^2 H - tr H^2)/2 + det H` of a displacement gradient: no cancellation at small strain.

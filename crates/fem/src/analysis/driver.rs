@@ -74,6 +74,8 @@ pub struct Analysis {
     pub(super) outdated_at: Vec<f64>,
     /// Scale that turns moments into forces \[mm\].
     pub(super) lever: f64,
+    /// Diagonal of the box around the nodes at rest \[mm\].
+    pub(super) extent: f64,
 }
 
 /// The iterate at which an attempt ended.
@@ -94,6 +96,7 @@ impl Analysis {
         let (coordinates, nodes) = (model.kinematics.coordinate_count(), model.kinematics.node_count());
         Self {
             lever: model.kinematics.lever(),
+            extent: extent(model.kinematics.positions()),
             model,
             options,
             solver_options,
@@ -387,4 +390,11 @@ impl Analysis {
 /// Whether the elements of a contribution have changed.
 fn prepare(contributions: &mut [Box<dyn Contribution>], displacement: &[f64]) -> Result<bool, FemError> {
     contributions.iter_mut().try_fold(false, |changed, c| Ok(c.prepare(displacement)? || changed))
+}
+
+/// Diagonal of the box around some points.
+fn extent(points: &[Vector3<f64>]) -> f64 {
+    let Some(&first) = points.first() else { return 0.0 };
+    let (low, high) = points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+    (high - low).norm()
 }

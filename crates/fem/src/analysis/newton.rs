@@ -27,6 +27,10 @@ const SEARCHES: usize = 10;
 /// A relative residual that is nothing but rounding.
 const ROUNDED: f64 = 1e-13;
 
+/// Times its size and the prescribed motion that a model may move. Beyond, forces are made of rounding and would pass for
+/// balanced.
+const RUNAWAY: f64 = 1e6;
+
 /// Part of the norm of the element forces below which reactions do not count as a reference.
 const SMALL_REACTION: f64 = 1e-6;
 
@@ -224,6 +228,7 @@ impl Analysis {
     ) -> Result<(), FemError> {
         let kinematics = &self.model.kinematics;
         kinematics.displacements(&iterate.q, &mut iterate.displacement);
+        self.check_reach(&iterate.displacement, target)?;
         let at = Evaluation {
             q: &iterate.q,
             configuration: Configuration {
@@ -256,6 +261,15 @@ impl Analysis {
         self.stiffness_scale = assembled.stiffness_scale.unwrap_or(self.stiffness_scale);
         self.measure(iterate, target, assembled.force_scale);
         Ok(())
+    }
+
+    /// Whether the iterate is still about the model.
+    fn check_reach(&self, displacements: &[f64], target: &super::workspace::Target) -> Result<(), FemError> {
+        let prescribed = target.prescribed.iter().fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
+        let displacement = displacements.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let extent = self.extent;
+        let near = displacement <= RUNAWAY * extent.max(prescribed);
+        if near { Ok(()) } else { Err(FemError::RunsAway { displacement, extent }) }
     }
 
     /// Norms of the residual and of what it is compared with; moments count over the lever.

@@ -4,7 +4,7 @@ use pulp::Simd;
 use subrope_material::Law;
 
 use super::formulation::{ElementFailure, ElementInput, ElementResult};
-use super::kernel::{self, NodeVector, PointProducts};
+use super::kernel::{self, Buffers, NodeVector};
 use super::pack::Pack;
 
 /// A brick that goes through its eight points more than once, and keeps something of each pack in between.
@@ -14,7 +14,7 @@ pub(super) trait Averaging {
         simd: S,
         input: &ElementInput<'_, 8, L>,
         new: &mut [f64],
-        product: &mut PointProducts<8>,
+        buffers: &mut Buffers<S, 8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure>;
 }
@@ -25,18 +25,18 @@ pub(super) fn average<A: Averaging, L: Law, S: Simd, const SYMMETRIC: bool>(
     simd: S,
     input: &ElementInput<'_, 8, L>,
     new: &mut [f64],
-    product: &mut PointProducts<8>,
+    buffers: &mut Buffers<S, 8>,
     out: &mut ElementResult<8>,
 ) -> Result<(), ElementFailure> {
     // Constants, so that only one of them is compiled.
     if const { S::F64_LANES == 8 } {
-        A::passes::<L, S, 1, SYMMETRIC>(simd, input, new, product, out)
+        A::passes::<L, S, 1, SYMMETRIC>(simd, input, new, buffers, out)
     } else if const { S::F64_LANES == 4 } {
-        A::passes::<L, S, 2, SYMMETRIC>(simd, input, new, product, out)
+        A::passes::<L, S, 2, SYMMETRIC>(simd, input, new, buffers, out)
     } else if const { S::F64_LANES == 2 } {
-        A::passes::<L, S, 4, SYMMETRIC>(simd, input, new, product, out)
+        A::passes::<L, S, 4, SYMMETRIC>(simd, input, new, buffers, out)
     } else {
-        A::passes::<L, S, 8, SYMMETRIC>(simd, input, new, product, out)
+        A::passes::<L, S, 8, SYMMETRIC>(simd, input, new, buffers, out)
     }
 }
 
@@ -46,10 +46,10 @@ pub(super) fn packs<'a, L, S: Simd, const PACKS: usize>(
     simd: S,
     input: &ElementInput<'a, 8, L>,
 ) -> [Pack<'a, S, 8>; PACKS] {
-    let points = |number: usize| &input.points[number * S::F64_LANES..(number + 1) * S::F64_LANES];
-    let mut packs = [Pack::new(simd, points(0), &input.displacement); PACKS];
-    for (number, pack) in packs.iter_mut().enumerate().skip(1) {
-        *pack = Pack::new(simd, points(number), &input.displacement);
+    let mut packs = [Pack::at(simd, input.brick, 0); PACKS];
+    for (number, pack) in packs.iter_mut().enumerate() {
+        *pack = Pack::at(simd, input.brick, number * S::F64_LANES);
+        pack.deform(&input.displacement);
     }
     packs
 }

@@ -3,13 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use subrope_geometry::Hexahedron;
-use subrope_material::lanes::MAX_LANES;
 use subrope_material::{Law, StateKind};
 
 use super::failure::FailedPoint;
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
-use super::kernel::{NodeVector, PointGeometry, mirror};
-use super::pack::mixed_gradient;
+use super::geometry::{BrickGeometry, PointGroup, ReferenceGradients};
+use super::kernel::{Buffers, NodeVector, mirror};
 use super::{ElementEnergies, SolidFields};
 use crate::contribution::{Configuration, Contribution, Energies, Request, Sink};
 use crate::state::{StateError, StateReader, StateWriter};
@@ -39,8 +38,9 @@ pub struct SolidBlock<const N: usize, L, F> {
     law: L,
     nodes: Vec<[u32; N]>,
     labels: Vec<u64>,
-    points: Vec<PointGeometry<N>>,
-    points_per_element: usize,
+    reference: ReferenceGradients<N>,
+    /// Geometry of the points, element by element.
+    groups: Vec<PointGroup>,
     committed: Vec<f64>,
     trial: Vec<f64>,
     results: Vec<ElementResult<N>>,
@@ -62,31 +62,28 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         if F::NEEDS_FIBRE_TERM && !law.has_fibre_term() {
             return Err(FemError::NoFibreTerm { law: law.name() });
         }
-        let rule = H::quadrature();
+        let reference = ReferenceGradients::new::<H>();
         let count = mesh.cells.len() / N;
         expect_count("connectivity entries", mesh.cells.len(), count * N)?;
         expect_count("element labels", mesh.labels.len(), count)?;
-        expect_count("fibre frames", mesh.frames.len(), count * rule.len())?;
+        expect_count("fibre frames", mesh.frames.len(), count * reference.points())?;
         let mut nodes = Vec::with_capacity(count);
-        let mut points = Vec::with_capacity(count * rule.len());
-        for (e, cell) in mesh.cells.chunks_exact(N).enumerate() {
+        let mut groups = Vec::with_capacity(count * reference.groups());
+        let frames = mesh.frames.chunks_exact(reference.points());
+        for ((cell, frames), &label) in mesh.cells.chunks_exact(N).zip(frames).zip(mesh.labels) {
             let cell: [u32; N] = std::array::from_fn(|a| cell[a]);
             let x = element_positions(mesh.positions, &cell)?;
-            for (q, point) in rule.iter().enumerate() {
-                let frame = mesh.frames[e * rule.len() + q];
-                let map = H::gradient(point.xi);
-                points.push(point_geometry(&map, &x, frame, point.weight, mesh.labels[e])?);
-            }
+            reference.add_brick::<H>(&x, frames, label, &mut groups)?;
             nodes.push(cell);
         }
-        let states = count * rule.len() * law.state_len();
+        let states = count * reference.points() * law.state_len();
         Ok(Self {
             dissipation: dissipation_offsets(&law),
             law,
             nodes,
             labels: mesh.labels.to_vec(),
-            points,
-            points_per_element: rule.len(),
+            reference,
+            groups,
             committed: vec![0.0; states],
             trial: vec![0.0; states],
             results: vec![ElementResult::zero(0); SHARED_BATCH.min(count)],
@@ -110,9 +107,10 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
     pub(super) fn element_dissipation(&self, element: usize) -> [f64; 2] {
         let states = self.element_state(element).chunks_exact(self.law.state_len().max(1));
         let mut out = [0.0; 2];
-        for (point, state) in self.element_points(element).iter().zip(states) {
+        let brick = self.brick(element);
+        for (point, state) in states.enumerate() {
             for (sum, offset) in out.iter_mut().zip(self.dissipation) {
-                *sum += offset.map_or(0.0, |o| point.volume * state[o]);
+                *sum += offset.map_or(0.0, |o| brick.volume(point) * state[o]);
             }
         }
         out
@@ -121,7 +119,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
     /// Committed state of a point.
     pub(super) fn state(&self, element: usize, point: usize) -> &[f64] {
         let n = self.law.state_len();
-        let first = (element * self.points_per_element + point) * n;
+        let first = (element * self.reference.points() + point) * n;
         &self.committed[first..first + n]
     }
 
@@ -131,10 +129,14 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
         &self.committed[element * stride..(element + 1) * stride]
     }
 
-    pub(super) fn element_points(&self, element: usize) -> &[PointGeometry<N>] {
-        &self.points[element * self.points_per_element..(element + 1) * self.points_per_element]
+    /// Geometry of an element.
+    pub(super) fn brick(&self, element: usize) -> BrickGeometry<'_, N> {
+        let groups = self.reference.groups();
+        let groups = &self.groups[element * groups..(element + 1) * groups];
+        BrickGeometry::new(&self.reference, groups)
     }
 
+    #[inline(always)]
     pub(super) fn gather(&self, element: usize, displacement: &[f64]) -> NodeVector<N> {
         let mut out = [[0.0; N]; 3];
         for (a, &node) in self.nodes[element].iter().enumerate() {
@@ -147,7 +149,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
 
     /// Numbers of state per element.
     fn stride(&self) -> usize {
-        self.points_per_element * self.law.state_len()
+        self.reference.points() * self.law.state_len()
     }
 
     /// An element that failed, with what it was asked from the displacements `committed`.
@@ -163,13 +165,13 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
             ElementFailure::Law { point, source, at } => (point, source, at),
             ElementFailure::MeanVolume(ratio) => return FemError::MeanVolume { element: label, ratio },
         };
-        let geometry = &input.points[point];
-        let before = mixed_gradient(&self.gather(element, committed), &geometry.gradient);
+        let frame = input.brick.frame(point);
+        let before = input.brick.mixed_gradient(point, &self.gather(element, committed));
         let asked = FailedPoint {
             gradient: Matrix3::from_fn(|i, j| at.gradient[i][j]),
             mean_elongation: at.mean_elongation,
-            committed_gradient: geometry.frame.tr_mul(&before),
-            frame: geometry.frame,
+            committed_gradient: frame.tr_mul(&before),
+            frame,
             state: self.state(element, point).to_vec(),
             time_increment: input.time_increment,
             temperature: input.temperature,
@@ -182,7 +184,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidBlock<N, L, F> {
     fn input(&self, element: usize, at: &Configuration<'_>, request: Request) -> ElementInput<'_, N, L> {
         ElementInput {
             law: &self.law,
-            points: self.element_points(element),
+            brick: self.brick(element),
             displacement: self.gather(element, at.displacement),
             old: self.element_state(element),
             time_increment: at.time_increment,
@@ -237,16 +239,16 @@ impl<const N: usize, L: Law, F: Formulation<N>> WithSimd for Run<'_, N, L, F> {
         let Self { block, first, configuration, request, trial, out } = self;
         let stride = block.stride();
         let symmetric = block.law.is_symmetric();
-        let mut product = [[[0.0; N]; 3]; MAX_LANES];
+        let mut buffers = Buffers::zero(simd);
         for (i, result) in out.iter_mut().enumerate() {
             let new = &mut trial[i * stride..(i + 1) * stride];
             let input = block.input(first + i, configuration, request);
             result.force = [[0.0; N]; 3];
             result.energies = Energies::default();
             let outcome = if symmetric {
-                F::evaluate::<L, S, true>(simd, &input, new, &mut product, result)
+                F::evaluate::<L, S, true>(simd, &input, new, &mut buffers, result)
             } else {
-                F::evaluate::<L, S, false>(simd, &input, new, &mut product, result)
+                F::evaluate::<L, S, false>(simd, &input, new, &mut buffers, result)
             };
             result.failure = outcome.err();
             if symmetric && request == Request::Tangent {
@@ -318,12 +320,9 @@ impl<const N: usize, L: Law, F: Formulation<N>> Contribution for SolidBlock<N, L
     }
 
     fn dissipated(&self) -> [f64; 2] {
-        let n = self.law.state_len();
-        std::array::from_fn(|mode| {
-            self.dissipation[mode].map_or(0.0, |offset| {
-                self.points.iter().zip(self.committed.chunks_exact(n)).map(|(p, s)| p.volume * s[offset]).sum()
-            })
-        })
+        (0..self.nodes.len())
+            .map(|element| self.element_dissipation(element))
+            .fold([0.0; 2], |[t, l], [dt, dl]| [t + dt, l + dl])
     }
 }
 
@@ -379,37 +378,6 @@ fn element_positions<const N: usize>(
     // Differences to the first node: coordinates far from the origin lose no digits of the Jacobian.
     let origin = x[0];
     Ok(x.map(|p| p - origin))
-}
-
-fn point_geometry<const N: usize>(
-    map: &[[f64; N]; 3],
-    x: &[Vector3<f64>; N],
-    frame: Matrix3<f64>,
-    weight: f64,
-    label: u64,
-) -> Result<PointGeometry<N>, FemError> {
-    let mut jacobian = Matrix3::zeros();
-    for (i, line) in map.iter().enumerate() {
-        for (a, value) in line.iter().enumerate() {
-            for k in 0..3 {
-                jacobian[(k, i)] += x[a][k] * value;
-            }
-        }
-    }
-    let determinant = jacobian.determinant();
-    let inverse = jacobian
-        .try_inverse()
-        .filter(|_| determinant > 0.0)
-        .ok_or(subrope_geometry::GeometryError::Inverted { cell_label: label, determinant })?;
-    // dN/dX_fibre = R^T J^-T dN/dxi.
-    let to_fibre = frame.transpose() * inverse.transpose();
-    let mut gradient = [[0.0; N]; 3];
-    for (j, line) in gradient.iter_mut().enumerate() {
-        for (a, value) in line.iter_mut().enumerate() {
-            *value = (0..3).map(|i| to_fibre[(j, i)] * map[i][a]).sum();
-        }
-    }
-    Ok(PointGeometry { gradient, frame, volume: determinant * weight })
 }
 
 fn dissipation_offsets<L: Law>(law: &L) -> [Option<usize>; 2] {

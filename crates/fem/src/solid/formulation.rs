@@ -1,12 +1,13 @@
 //! Element formulations: what of the strain is taken at the point and what is averaged over the element.
 
-use nalgebra::{Matrix3, Vector6};
+use nalgebra::Vector6;
 use pulp::{NullaryFnOnce, Simd};
 use subrope_material::lanes::Lanes;
 use subrope_material::{LaneFailure, LaneInput, LaneResponse, Law, LawError, Request as LawRequest};
 
-use super::kernel::{NodeMatrix, NodeVector, PointGeometry, PointProducts, Stiffness};
-use super::pack::{self, Pack};
+use super::geometry::BrickGeometry;
+use super::kernel::{self, Buffers, NodeMatrix, NodeVector};
+use super::pack::Pack;
 use super::wide::Wide;
 use crate::contribution::{Energies, Request};
 
@@ -15,7 +16,7 @@ pub struct ElementInput<'a, const N: usize, L> {
     /// The law.
     pub law: &'a L,
     /// Integration points.
-    pub points: &'a [PointGeometry<N>],
+    pub brick: BrickGeometry<'a, N>,
     /// Nodal displacements.
     pub displacement: NodeVector<N>,
     /// Committed state of all points.
@@ -73,6 +74,7 @@ impl ElementFailure {
 
 /// Forces, stiffness and energies of one element.
 #[derive(Clone, Debug)]
+#[repr(align(64))] // No vector of the stiffness lies across two cache lines.
 pub struct ElementResult<const N: usize> {
     /// Stiffness, component-major.
     pub stiffness: NodeMatrix<N>,
@@ -140,50 +142,37 @@ pub trait Formulation<const N: usize>: Send + Sync + 'static {
         simd: S,
         input: &ElementInput<'_, N, L>,
         new: &mut [f64],
-        product: &mut PointProducts<N>,
+        buffers: &mut Buffers<S, N>,
         out: &mut ElementResult<N>,
     ) -> Result<(), ElementFailure>;
 }
 
 impl<const N: usize, L: Law> ElementInput<'_, N, L> {
-    /// `HR` of a point.
+    /// What the law is asked at the points of a pack.
     #[inline(always)]
-    pub fn gradient(&self, point: usize) -> Matrix3<f64> {
-        pack::mixed_gradient(&self.displacement, &self.points[point].gradient)
+    pub(super) fn strain<V>(&self, points: usize, gradient: [[V; 3]; 3], mean_elongation: Option<V>) -> LaneInput<V> {
+        let (time_increment, temperature) = (self.time_increment, self.temperature);
+        LaneInput { points, gradient, mean_elongation, time_increment, temperature }
     }
 
-    /// Reference volume \[mm^3\].
-    #[inline(always)]
-    pub(super) fn volume(&self) -> f64 {
-        self.points.iter().map(|point| point.volume).sum()
-    }
-
-    /// Calls the law at a pack.
+    /// Calls the law at the points of a pack from `first` on.
     #[inline(always)]
     pub(super) fn call<S: Simd>(
         &self,
         simd: S,
-        strain: &PackStrain<S>,
+        (first, strain): (usize, &LaneInput<Wide<S>>),
         new: &mut [f64],
         response: &mut LaneResponse<Wide<S>>,
     ) -> Result<(), ElementFailure> {
-        let &PackStrain { first, points, gradient, mean_elongation } = strain;
         let n = self.law.state_len();
-        let states = first * n..(first + points) * n;
-        let input = LaneInput {
-            points,
-            gradient,
-            mean_elongation,
-            time_increment: self.time_increment,
-            temperature: self.temperature,
-        };
+        let states = first * n..(first + strain.points) * n;
         let request = match self.request {
             Request::Residual => LawRequest::Stress,
             Request::Tangent => LawRequest::Tangent,
         };
         let (old, new) = (&self.old[states.clone()], &mut new[states]);
-        ask(simd, self.law, (&input, old), new, request, response)
-            .map_err(|failure| ElementFailure::in_lane((first, failure), &gradient, mean_elongation))
+        ask(simd, self.law, (strain, old), new, request, response)
+            .map_err(|failure| ElementFailure::in_lane((first, failure), &strain.gradient, strain.mean_elongation))
     }
 }
 
@@ -198,17 +187,6 @@ pub(super) fn ask<L: Law, S: Simd>(
     response: &mut LaneResponse<Wide<S>>,
 ) -> Result<(), LaneFailure> {
     simd.vectorize(LawCall { law, input, old, new, request, response })
-}
-
-/// What a law is asked at a pack.
-pub(super) struct PackStrain<S: Simd> {
-    /// Number of the first point.
-    pub(super) first: usize,
-    /// How many points.
-    pub(super) points: usize,
-    /// Displacement gradient in the fibre frame.
-    pub(super) gradient: [[Wide<S>; 3]; 3],
-    pub(super) mean_elongation: Option<Wide<S>>,
 }
 
 /// A law at a pack: a function of its own for every law and instruction set, whatever the element.
@@ -242,22 +220,26 @@ impl<const N: usize> Formulation<N> for Full {
         simd: S,
         input: &ElementInput<'_, N, L>,
         new: &mut [f64],
-        product: &mut PointProducts<N>,
+        buffers: &mut Buffers<S, N>,
         out: &mut ElementResult<N>,
     ) -> Result<(), ElementFailure> {
-        let mut response = LaneResponse::zero(Wide::new(simd, 0.0));
-        for (number, points) in input.points.chunks(S::F64_LANES).enumerate() {
-            let (first, pack) = (number * S::F64_LANES, Pack::new(simd, points, &input.displacement));
-            let strain = PackStrain { first, points: points.len(), gradient: pack.gradient, mean_elongation: None };
-            input.call(simd, &strain, new, &mut response)?;
+        let Buffers { group, response } = buffers;
+        for first in (0..input.brick.points()).step_by(S::F64_LANES) {
+            let mut pack = Pack::at(simd, input.brick, first);
+            pack.deform(&input.displacement);
+            let strain = input.strain(pack.points, pack.gradient, None);
+            input.call(simd, (first, &strain), new, response)?;
             out.keep_stress(first, &response.second_piola);
             pack.add_force(&response.second_piola, pack.volume, &mut out.force);
             if input.request == Request::Tangent {
                 let (s, d) = (&response.second_piola, &response.tangent);
-                let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
-                pack.add_stiffness::<SYMMETRIC>(s, d, number == 0, stiffness);
+                pack.put_elasticity::<SYMMETRIC>(s, d, group);
+                if pack.ends_group() {
+                    let at = (input.brick, pack.group_start());
+                    kernel::add_group::<S, N, SYMMETRIC>(simd, at, group, &mut out.stiffness);
+                }
             }
-            out.add_energies(&pack, &response);
+            out.add_energies(&pack, response);
         }
         Ok(())
     }

@@ -5,8 +5,8 @@ use subrope_material::lanes::Lanes;
 use subrope_material::{LaneFailure, LaneResponse, Law, LawError};
 
 use super::averaged::{self, Averaging, MeanTerms};
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
-use super::kernel::{PointProducts, Stiffness};
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::kernel::{self, Buffers};
 use super::pack::Pack;
 use super::wide::Wide;
 use crate::contribution::Request;
@@ -28,10 +28,10 @@ impl Formulation<8> for MeanElongation {
         simd: S,
         input: &ElementInput<'_, 8, L>,
         new: &mut [f64],
-        product: &mut PointProducts<8>,
+        buffers: &mut Buffers<S, 8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
-        averaged::average::<Self, L, S, SYMMETRIC>(simd, input, new, product, out)
+        averaged::average::<Self, L, S, SYMMETRIC>(simd, input, new, buffers, out)
     }
 }
 
@@ -41,11 +41,11 @@ impl Averaging for MeanElongation {
         simd: S,
         input: &ElementInput<'_, 8, L>,
         new: &mut [f64],
-        product: &mut PointProducts<8>,
+        buffers: &mut Buffers<S, 8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
         let (zero, lanes) = (Wide::new(simd, 0.0), S::F64_LANES);
-        let (mut mean, volume) = (0.0, input.volume());
+        let (mut mean, volume) = (0.0, input.brick.total_volume());
         let packs = averaged::packs::<L, S, PACKS>(simd, input);
         let mut stretches = [zero; PACKS];
         for (number, (pack, stretch)) in packs.iter().zip(&mut stretches).enumerate() {
@@ -62,12 +62,8 @@ impl Averaging for MeanElongation {
         let mut fibre_stress = 0.0;
         for (number, (pack, response)) in packs.iter().zip(&mut responses).enumerate() {
             let (first, mean_elongation) = (number * lanes, Some(zero.splat(mean)));
-            input.call(
-                simd,
-                &PackStrain { first, points: lanes, gradient: pack.gradient, mean_elongation },
-                new,
-                response,
-            )?;
+            let strain = input.strain(lanes, pack.gradient, mean_elongation);
+            input.call(simd, (first, &strain), new, response)?;
             pack.integrate(response.fibre.fibre_stress, &mut fibre_stress);
             out.add_energies(pack, response);
         }
@@ -81,8 +77,7 @@ impl Averaging for MeanElongation {
             if input.request == Request::Tangent {
                 response.tangent[0][0] -= inverse * inverse * (2.0 * fibre_stress);
                 let (s, d) = (&response.second_piola, &response.tangent);
-                let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
-                pack.add_stiffness::<SYMMETRIC>(s, d, number == 0, stiffness);
+                pack.put_elasticity::<SYMMETRIC>(s, d, &mut buffers.group);
                 let fibre = &response.fibre;
                 let measure = [inverse, zero, zero, zero, zero, zero];
                 pack.add_force(&measure, pack.volume * (1.0 / volume), &mut terms.gradient);
@@ -92,6 +87,7 @@ impl Averaging for MeanElongation {
             }
         }
         if input.request == Request::Tangent {
+            kernel::add_group::<S, 8, SYMMETRIC>(simd, (input.brick, 0), &mut buffers.group, &mut out.stiffness);
             terms.add_to::<S, SYMMETRIC>(simd, out);
         }
         Ok(())

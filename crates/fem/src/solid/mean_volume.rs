@@ -8,8 +8,8 @@ use subrope_material::mandel::{PAIRS, WEIGHTS};
 use subrope_material::{LaneFailure, LaneResponse, Law, LawError};
 
 use super::averaged::{self, Averaging, MeanTerms};
-use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PackStrain};
-use super::kernel::{PointProducts, Stiffness};
+use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation};
+use super::kernel::{self, Buffers};
 use super::pack::{MANDEL, Pack};
 use super::wide::Wide;
 use crate::contribution::Request;
@@ -43,10 +43,10 @@ impl Formulation<8> for MeanVolume {
         simd: S,
         input: &ElementInput<'_, 8, L>,
         new: &mut [f64],
-        product: &mut PointProducts<8>,
+        buffers: &mut Buffers<S, 8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
-        averaged::average::<Self, L, S, SYMMETRIC>(simd, input, new, product, out)
+        averaged::average::<Self, L, S, SYMMETRIC>(simd, input, new, buffers, out)
     }
 }
 
@@ -56,11 +56,11 @@ impl Averaging for MeanVolume {
         simd: S,
         input: &ElementInput<'_, 8, L>,
         new: &mut [f64],
-        product: &mut PointProducts<8>,
+        buffers: &mut Buffers<S, 8>,
         out: &mut ElementResult<8>,
     ) -> Result<(), ElementFailure> {
         let (zero, lanes) = (Wide::new(simd, 0.0), S::F64_LANES);
-        let (mut mean, volume) = (0.0, input.volume());
+        let (mut mean, volume) = (0.0, input.brick.total_volume());
         let packs = averaged::packs::<L, S, PACKS>(simd, input);
         let half = Half { dilation: zero, right: [zero; 6], pressure: zero, response: LaneResponse::zero(zero) };
         let mut halves = [half; PACKS];
@@ -96,8 +96,7 @@ impl Averaging for MeanVolume {
             if input.request == Request::Tangent {
                 let split = VolumeSplit::new(half, &inverse, share);
                 let tangent = split.tangent();
-                let stiffness = Stiffness { matrix: &mut out.stiffness, product: &mut *product };
-                pack.add_stiffness::<SYMMETRIC>(&stress, &tangent, number == 0, stiffness);
+                pack.put_elasticity::<SYMMETRIC>(&stress, &tangent, &mut buffers.group);
                 let [row, column] = split.couplings();
                 pack.add_force(&inverse, pack.volume * weight, &mut terms.gradient);
                 pack.add_force(&row, pack.volume, &mut terms.stress_coupling);
@@ -106,6 +105,7 @@ impl Averaging for MeanVolume {
             }
         }
         if input.request == Request::Tangent {
+            kernel::add_group::<S, 8, SYMMETRIC>(simd, (input.brick, 0), &mut buffers.group, &mut out.stiffness);
             terms.add_to::<S, SYMMETRIC>(simd, out);
         }
         Ok(())
@@ -131,8 +131,8 @@ impl<S: Simd> Half<S> {
             }
             row[i] += grow;
         }
-        let strain = PackStrain { first, points: pack.points.len(), gradient, mean_elongation: None };
-        input.call(pack.simd, &strain, new, &mut self.response)?;
+        let strain = input.strain(pack.points, gradient, None);
+        input.call(pack.simd, (first, &strain), new, &mut self.response)?;
         let factor = psi.map(f64::exp);
         for stress in &mut self.response.second_piola {
             *stress = *stress * factor;

@@ -4,11 +4,11 @@ use std::marker::PhantomData;
 
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
-use subrope_material::lanes::MAX_LANES;
 use subrope_material::{Law, LawError, StateVariable, StrainModes, mandel};
 
 use super::SolidBlock;
 use super::formulation::{ElementFailure, ElementInput, ElementResult, Formulation, PointStrain};
+use super::kernel::Buffers;
 use crate::FemError;
 use crate::contribution::{Energies, Request};
 
@@ -98,7 +98,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
     }
 
     fn points_per_element(&self) -> usize {
-        self.element_points(0).len()
+        self.brick(0).points()
     }
 
     fn state_variables(&self) -> &[StateVariable] {
@@ -114,7 +114,7 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
     }
 
     fn point_state(&self, element: usize, point: usize) -> (&[f64], f64) {
-        (self.state(element, point), self.element_points(element)[point].volume)
+        (self.state(element, point), self.brick(element).volume(point))
     }
 
     fn element_energies(&self, element: usize) -> ElementEnergies {
@@ -131,33 +131,33 @@ impl<const N: usize, L: Law, F: Formulation<N>> SolidFields for SolidBlock<N, L,
         displacement: &[f64],
         visit: &mut dyn FnMut(usize, &PointSample<'_>),
     ) -> Result<(), FemError> {
-        let points = self.element_points(element);
+        let brick = self.brick(element);
         let n = self.law().state_len();
         let input = ElementInput {
             law: self.law(),
-            points,
+            brick,
             displacement: self.gather(element, displacement),
             old: self.element_state(element),
             time_increment: 0.0,
             temperature: crate::REFERENCE_TEMPERATURE,
             request: Request::Residual,
         };
-        let mut result = Box::new(ElementResult::zero(points.len()));
-        let mut new = vec![0.0; points.len() * n];
+        let mut result = Box::new(ElementResult::zero(brick.points()));
+        let mut new = vec![0.0; brick.points() * n];
         let evaluation = Evaluation { input: &input, new: &mut new, out: &mut result, formulation: PhantomData::<F> };
         pulp::Arch::new().dispatch(evaluation).map_err(|f| self.failure(element, f, &input, displacement))?;
-        for (q, point) in points.iter().enumerate() {
-            let hr = input.gradient(q);
-            let fr = point.frame + hr;
-            let jacobian = fr.determinant() * point.frame.determinant();
+        for q in 0..brick.points() {
+            let (frame, hr) = (brick.frame(q), brick.mixed_gradient(q, &input.displacement));
+            let fr = frame + hr;
+            let jacobian = fr.determinant() * frame.determinant();
             let stress = mandel::to_matrix(&result.second_piola[q]);
             let sample = PointSample {
-                volume: point.volume,
-                frame: point.frame,
-                deformation_gradient: fr * point.frame.transpose(),
+                volume: brick.volume(q),
+                frame,
+                deformation_gradient: fr * frame.transpose(),
                 cauchy_stress: fr * stress * fr.transpose() / jacobian,
-                modes: StrainModes::from_displacement_gradient(&point.frame.tr_mul(&hr)).map_err(|source| {
-                    self.failure(element, no_modes(q, source, &point.frame.tr_mul(&hr)), &input, displacement)
+                modes: StrainModes::from_displacement_gradient(&frame.tr_mul(&hr)).map_err(|source| {
+                    self.failure(element, no_modes(q, source, &frame.tr_mul(&hr)), &input, displacement)
                 })?,
                 state: self.state(element, q),
             };
@@ -186,7 +186,6 @@ impl<const N: usize, L: Law, F: Formulation<N>> WithSimd for Evaluation<'_, N, L
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let mut product = [[[0.0; N]; 3]; MAX_LANES];
-        F::evaluate::<L, S, true>(simd, self.input, self.new, &mut product, self.out)
+        F::evaluate::<L, S, true>(simd, self.input, self.new, &mut Buffers::zero(simd), self.out)
     }
 }

@@ -1,18 +1,18 @@
 //! Packs of integration points, one point in each lane of a vector: kinematics, forces and stiffness.
 //!
-//! Everything is written for shape-function gradients by *fibre-frame* coordinates, `g_j(a) = dN_a/dX_j`, formed once
-//! from the reference mesh. With `R` the fibre frame (columns e1 e2 e3) and `H = grad u`:
+//! Everything is written for shape-function gradients by *fibre-frame* coordinates, `g_j(a) = dN_a/dX_j = B_ji dN_a/dxi_i`
+//! (see `geometry.rs`). With `R` the fibre frame (columns e1 e2 e3) and `H = grad u`:
 //! `HR_kj = sum_a u_k(a) g_j(a)`, `FR = R + HR` (spatial rows, fibre-frame columns), `H_f = R^T HR` for the law.
 //! Then `dE_ij = sym(FR_ki g_j(a)) du_k(a)`, the force is `P_kj g_j` with `P = FR S`, and the stiffness is
 //! `K_(ak)(bm) = g_j(a) A_kjml g_l(b)` with `A_kjml = FR_ki D_(ij)(pl) FR_mp + delta_km S_jl`.
 
 #![allow(clippy::needless_range_loop, reason = "tensors are written by their indices, as in the formulas")]
 
-use nalgebra::Matrix3;
 use pulp::{NullaryFnOnce, Simd};
 use subrope_material::lanes::{Lanes, MAX_LANES};
 
-use super::kernel::{Block, NodeVector, PointGeometry, Stiffness, add_multiple, add_products, combine, dot};
+use super::geometry::{BrickGeometry, OnLine};
+use super::kernel::{Elasticity, GroupBuffers, NodeVector, add_forces};
 use super::wide::Wide;
 
 /// `1/sqrt(2)`: from a Mandel shear entry to the tensor's.
@@ -24,19 +24,16 @@ pub const MANDEL: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
 /// Factor from a Mandel entry to the tensor's.
 const FACTOR: [f64; 6] = [1.0, 1.0, 1.0, HALF_ROOT, HALF_ROOT, HALF_ROOT];
 
-/// `HR = sum_a u(a) g(a)^T`.
-#[inline(always)]
-pub fn mixed_gradient<const N: usize>(u: &NodeVector<N>, g: &NodeVector<N>) -> Matrix3<f64> {
-    Matrix3::from_fn(|k, j| (0..N).map(|a| u[k][a] * g[j][a]).sum())
-}
-
 /// A pack of integration points: one in each lane, the last repeated in lanes that are left over.
 #[derive(Clone, Copy, Debug)]
 pub struct Pack<'a, S: Simd, const N: usize> {
     /// The instruction set.
     pub simd: S,
-    /// The points.
-    pub points: &'a [PointGeometry<N>],
+    brick: BrickGeometry<'a, N>,
+    /// Number of the first point.
+    pub first: usize,
+    /// How many points.
+    pub points: usize,
     /// `FR = R + HR`.
     pub fr: [[Wide<S>; 3]; 3],
     /// `H_f = R^T HR`.
@@ -46,52 +43,78 @@ pub struct Pack<'a, S: Simd, const N: usize> {
 }
 
 impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
-    /// Kinematics of at most as many points as there are lanes.
+    /// The pack of the points from `first` on, before [`Pack::deform`] has been called.
     #[inline(always)]
-    pub fn new(simd: S, points: &'a [PointGeometry<N>], displacement: &NodeVector<N>) -> Self {
-        simd.vectorize(NewPack { simd, points, displacement })
+    pub fn at(simd: S, brick: BrickGeometry<'a, N>, first: usize) -> Self {
+        let points = S::F64_LANES.min(brick.points() - first);
+        let volume = Wide::of_group(simd, &brick.group(first).volume.0, first);
+        let room = [[volume; 3]; 3];
+        Self { simd, brick, first, points, fr: room, gradient: room, volume }
+    }
+
+    /// Kinematics under nodal displacements.
+    #[inline(always)]
+    pub fn deform(&mut self, displacement: &NodeVector<N>) {
+        self.simd.vectorize(Deform { pack: self, displacement });
     }
 
     #[inline(always)]
-    fn form(simd: S, points: &'a [PointGeometry<N>], u: &NodeVector<N>) -> Self {
-        let (zero, last) = (Wide::new(simd, 0.0), points.len() - 1);
-        let mut numbers = [[[0.0; MAX_LANES]; 3]; 3];
-        let mut frames = numbers;
-        let mut volumes = [0.0; MAX_LANES];
-        for lane in 0..S::F64_LANES {
-            let point = &points[lane.min(last)];
+    fn form_gradients(&mut self, u: &NodeVector<N>) {
+        let Self { simd, first, .. } = *self;
+        let map = self.brick.by_node(first);
+        // Displacement gradient by the brick's own coordinates.
+        let mut own = [[Wide::new(simd, 0.0); 3]; 3];
+        for a in 0..N {
             for k in 0..3 {
-                for j in 0..3 {
-                    numbers[k][j][lane] = dot(simd, &u[k], &point.gradient[j]);
-                    frames[k][j][lane] = point.frame[(k, j)];
+                let displacement = Wide::new(simd, u[k][a]);
+                for i in 0..3 {
+                    own[k][i] = Wide::of_group(simd, &map[a][i].0, first).mul_add(displacement, own[k][i]);
                 }
             }
-            volumes[lane] = point.volume;
         }
-        let mut pack = Self { simd, points, fr: [[zero; 3]; 3], gradient: [[zero; 3]; 3], volume: zero.load(&volumes) };
-        let mut hr = [[zero; 3]; 3];
-        let mut frame = hr;
+        let mut hr = own;
+        for j in 0..3 {
+            let to_fibre = self.to_fibre(j);
+            for k in 0..3 {
+                hr[k][j] = sum3(own[k], to_fibre);
+            }
+        }
+        let group = self.brick.group(first);
+        let mut frame = own;
         for k in 0..3 {
             for j in 0..3 {
-                hr[k][j] = zero.load(&numbers[k][j]);
-                frame[k][j] = zero.load(&frames[k][j]);
-                pack.fr[k][j] = frame[k][j] + hr[k][j];
+                frame[k][j] = Wide::of_group(simd, &group.frame[k][j].0, first);
+                self.fr[k][j] = frame[k][j] + hr[k][j];
             }
         }
         for i in 0..3 {
             for j in 0..3 {
-                pack.gradient[i][j] = sum3([frame[0][i], frame[1][i], frame[2][i]], [hr[0][j], hr[1][j], hr[2][j]]);
+                self.gradient[i][j] = sum3([frame[0][i], frame[1][i], frame[2][i]], [hr[0][j], hr[1][j], hr[2][j]]);
             }
         }
-        pack
+    }
+
+    /// Row of `B`.
+    #[inline(always)]
+    fn to_fibre(&self, row: usize) -> [Wide<S>; 3] {
+        let [OnLine(a), OnLine(b), OnLine(c)] = &self.brick.group(self.first).to_fibre[row];
+        let of = |numbers| Wide::of_group(self.simd, numbers, self.first);
+        [of(a), of(b), of(c)]
     }
 
     /// Adds the numbers of the points, weighted by their volumes, in the order of the points.
     #[inline(always)]
     pub fn integrate(&self, numbers: Wide<S>, sum: &mut f64) {
         let numbers = (numbers * self.volume).to_array();
-        for number in &numbers[..self.points.len()] {
-            *sum += number;
+        if self.points == S::F64_LANES {
+            // A constant length.
+            for number in &numbers[..S::F64_LANES] {
+                *sum += number;
+            }
+        } else {
+            for number in &numbers[..self.points] {
+                *sum += number;
+            }
         }
     }
 
@@ -107,113 +130,118 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
         for i in 0..6 {
             tensor[i] = v[i] * (scale * FACTOR[i]);
         }
-        let mut p = [[[0.0; MAX_LANES]; 3]; 3];
+        let to_fibre = [self.to_fibre(0), self.to_fibre(1), self.to_fibre(2)];
+        let mut t = [[[0.0; MAX_LANES]; 3]; 3];
         for k in 0..3 {
+            let mut p = self.fr[k];
             for j in 0..3 {
-                p[k][j] = sum3(self.fr[k], column(&tensor, j)).to_array();
+                p[j] = sum3(self.fr[k], column(&tensor, j));
+            }
+            for i in 0..3 {
+                t[k][i] = sum3(p, [to_fibre[0][i], to_fibre[1][i], to_fibre[2][i]]).to_array();
             }
         }
-        for (lane, point) in self.points.iter().enumerate() {
-            for k in 0..3 {
-                for j in 0..3 {
-                    add_multiple(self.simd, p[k][j][lane], &point.gradient[j], &mut out[k]);
-                }
-            }
-        }
+        add_forces(self.simd, self.brick.by_point(self.first, self.points), &t, out);
     }
 
-    /// Adds the stiffness of tangents `d` (by columns) and stresses `s`, or begins with it when `fresh`. When `SYMMETRIC`
-    /// only entries whose row comes before their column are meaningful afterwards, see `kernel::mirror`.
+    /// Puts the first elasticity tensors of stresses and tangents (by columns) in their places for `kernel::add_group`;
+    /// only `k <= m` when `SYMMETRIC`.
     #[inline(always)]
-    pub fn add_stiffness<const SYMMETRIC: bool>(
+    pub fn put_elasticity<const SYMMETRIC: bool>(
         &self,
         stress: &[Wide<S>; 6],
         tangent: &[[Wide<S>; 6]; 6],
-        fresh: bool,
-        stiffness: Stiffness<'_, N>,
+        buffers: &mut GroupBuffers<N>,
     ) {
-        self.simd.vectorize(AddStiffness::<S, N, SYMMETRIC> { pack: self, stress, tangent, fresh, stiffness });
+        let out = &mut buffers.elasticity;
+        self.simd.vectorize(PutElasticity::<S, N, SYMMETRIC> { pack: self, stress, tangent, out });
     }
 
+    /// Whether the pack ends a group of points.
     #[inline(always)]
-    fn sum_stiffness<const SYMMETRIC: bool>(
-        &self,
-        s: &[Wide<S>; 6],
-        d: &[[Wide<S>; 6]; 6],
-        fresh: bool,
-        Stiffness { matrix, product }: Stiffness<'_, N>,
-    ) {
-        let elasticity = self.first_elasticity::<SYMMETRIC>(s, d);
-        for k in 0..3 {
-            for m in if SYMMETRIC { k } else { 0 }..3 {
-                for (lane, point) in self.points.iter().enumerate() {
-                    for j in 0..3 {
-                        let [a, b, c] = &elasticity[k][j][m];
-                        let factors = [lanes_of::<S>(a)[lane], lanes_of::<S>(b)[lane], lanes_of::<S>(c)[lane]];
-                        combine(self.simd, factors, &point.gradient, &mut product[lane][j]);
-                    }
-                }
-                let block = Block { upper: SYMMETRIC && k == m, fresh, column: m, rows: &mut matrix[k] };
-                add_products(self.simd, self.points, product, block);
-            }
-        }
+    pub fn ends_group(&self) -> bool {
+        let end = self.first + self.points;
+        end.is_multiple_of(MAX_LANES) || end == self.brick.points()
     }
 
-    /// First elasticity tensor times the points' volumes, `a[k][j][m][l]`; only `k <= m` when `SYMMETRIC`.
+    /// The first point of the pack's group.
     #[inline(always)]
-    fn first_elasticity<const SYMMETRIC: bool>(
-        &self,
-        s: &[Wide<S>; 6],
-        d: &[[Wide<S>; 6]; 6],
-    ) -> [[[[S::f64s; 3]; 3]; 3]; 3] {
-        let fr = &self.fr;
-        // half[I][m][l] = sum_p D_(I)(pl) FR_mp, I a Mandel row scaled to a tensor entry.
-        let mut half = [[[self.volume; 3]; 3]; 6];
-        for (i, half) in half.iter_mut().enumerate() {
-            let mut row = [self.volume * FACTOR[i]; 6];
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = d[j][i] * (*entry * FACTOR[j]);
-            }
-            for m in 0..3 {
-                for l in 0..3 {
-                    half[m][l] = sum3(fr[m], column(&row, l));
-                }
-            }
-        }
-        let mut out = [[[[self.simd.splat_f64s(0.0); 3]; 3]; 3]; 3];
-        for k in 0..3 {
-            for m in if SYMMETRIC { k } else { 0 }..3 {
-                for j in 0..3 {
-                    for l in 0..3 {
-                        let [a, b, c] = MANDEL[j];
-                        let mut entry = sum3(fr[k], [half[a][m][l], half[b][m][l], half[c][m][l]]);
-                        if k == m {
-                            entry += s[MANDEL[j][l]] * (self.volume * FACTOR[MANDEL[j][l]]);
-                        }
-                        out[k][j][m][l] = entry.lanes();
-                    }
-                }
+    pub fn group_start(&self) -> usize {
+        self.first / MAX_LANES * MAX_LANES
+    }
+}
+
+/// First elasticity tensor times the points' volumes, `A_kjml = FR_ki D_(ij)(pl) FR_mp + delta_km S_jl`.
+struct FirstElasticity<'a, S: Simd> {
+    fr: &'a [[Wide<S>; 3]; 3],
+    /// `S`, entries of the tensor times the volume.
+    stress: [Wide<S>; 6],
+    /// Columns of `D`, entries of the tensor times the volume.
+    tangent: [[Wide<S>; 6]; 6],
+}
+
+impl<'a, S: Simd> FirstElasticity<'a, S> {
+    #[inline(always)]
+    fn new<const N: usize>(pack: &'a Pack<'_, S, N>, s: &[Wide<S>; 6], d: &[[Wide<S>; 6]; 6]) -> Self {
+        let (mut stress, mut tangent) = (*s, *d);
+        let (normal, shear) = (pack.volume, pack.volume * HALF_ROOT);
+        for j in 0..6 {
+            stress[j] = stress[j] * if j < 3 { normal } else { shear };
+            for i in 0..6 {
+                let weight = match (i < 3, j < 3) {
+                    (true, true) => normal,
+                    (false, false) => pack.volume * 0.5,
+                    _ => shear,
+                };
+                tangent[j][i] = tangent[j][i] * weight;
             }
         }
-        out
+        Self { fr: &pack.fr, stress, tangent }
+    }
+
+    /// `sum_p D_(I)(pl) FR_mp`: `[I][l]`, `I` a Mandel row.
+    #[inline(always)]
+    fn half(&self, m: usize) -> [[Wide<S>; 3]; 6] {
+        let d = &self.tangent;
+        let mut half = [self.fr[0]; 6];
+        for i in 0..6 {
+            for l in 0..3 {
+                let [a, b, c] = [MANDEL[0][l], MANDEL[1][l], MANDEL[2][l]];
+                half[i][l] = sum3(self.fr[m], [d[a][i], d[b][i], d[c][i]]);
+            }
+        }
+        half
+    }
+
+    /// `A_kjml` over `l`.
+    #[inline(always)]
+    fn row(&self, half: &[[Wide<S>; 3]; 6], [k, j, m]: [usize; 3]) -> [Wide<S>; 3] {
+        let [a, b, c] = MANDEL[j];
+        let mut row = half[a];
+        for l in 0..3 {
+            row[l] = sum3(self.fr[k], [half[a][l], half[b][l], half[c][l]]);
+            if k == m {
+                row[l] += self.stress[MANDEL[j][l]];
+            }
+        }
+        row
     }
 }
 
 // Functions of their own for every element and instruction set, whatever the law: much less to compile.
 
-/// [`Pack::new`].
-struct NewPack<'a, 'u, S: Simd, const N: usize> {
-    simd: S,
-    points: &'a [PointGeometry<N>],
+/// [`Pack::deform`].
+struct Deform<'p, 'a, 'u, S: Simd, const N: usize> {
+    pack: &'p mut Pack<'a, S, N>,
     displacement: &'u NodeVector<N>,
 }
 
-impl<'a, S: Simd, const N: usize> NullaryFnOnce for NewPack<'a, '_, S, N> {
-    type Output = Pack<'a, S, N>;
+impl<S: Simd, const N: usize> NullaryFnOnce for Deform<'_, '_, '_, S, N> {
+    type Output = ();
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        Pack::form(self.simd, self.points, self.displacement)
+    fn call(self) {
+        self.pack.form_gradients(self.displacement);
     }
 }
 
@@ -234,22 +262,32 @@ impl<S: Simd, const N: usize> NullaryFnOnce for AddForce<'_, S, N> {
     }
 }
 
-/// [`Pack::add_stiffness`].
-struct AddStiffness<'a, S: Simd, const N: usize, const SYMMETRIC: bool> {
+/// [`Pack::put_elasticity`].
+struct PutElasticity<'a, S: Simd, const N: usize, const SYMMETRIC: bool> {
     pack: &'a Pack<'a, S, N>,
     stress: &'a [Wide<S>; 6],
     tangent: &'a [[Wide<S>; 6]; 6],
-    fresh: bool,
-    stiffness: Stiffness<'a, N>,
+    out: &'a mut Elasticity,
 }
 
-impl<S: Simd, const N: usize, const SYMMETRIC: bool> NullaryFnOnce for AddStiffness<'_, S, N, SYMMETRIC> {
+impl<S: Simd, const N: usize, const SYMMETRIC: bool> NullaryFnOnce for PutElasticity<'_, S, N, SYMMETRIC> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { pack, stress, tangent, fresh, stiffness } = self;
-        pack.sum_stiffness::<SYMMETRIC>(stress, tangent, fresh, stiffness);
+        let Self { pack, stress, tangent, out } = self;
+        let elasticity = FirstElasticity::new(pack, stress, tangent);
+        for m in 0..3 {
+            let half = elasticity.half(m);
+            for k in 0..if SYMMETRIC { m + 1 } else { 3 } {
+                for j in 0..3 {
+                    let row = elasticity.row(&half, [k, j, m]);
+                    for l in 0..3 {
+                        row[l].put_into(&mut out[k][m][j][l].0, pack.first);
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -263,9 +301,4 @@ fn sum3<V: Lanes>(a: [V; 3], b: [V; 3]) -> V {
 #[inline(always)]
 fn column<V: Lanes>(v: &[V; 6], j: usize) -> [V; 3] {
     [v[MANDEL[0][j]], v[MANDEL[1][j]], v[MANDEL[2][j]]]
-}
-
-#[inline(always)]
-fn lanes_of<S: Simd>(vector: &S::f64s) -> &[f64] {
-    pulp::bytemuck::cast_slice(std::slice::from_ref(vector))
 }

@@ -6,7 +6,10 @@ use pulp::Simd;
 use subrope_material::lanes::{Lanes, MAX_LANES};
 
 /// A vector of the instruction set `S`. The token that travels with it takes no room.
+///
+/// Four lanes in memory do not lie across two cache lines.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub struct Wide<S: Simd> {
     simd: S,
     lanes: S::f64s,
@@ -24,6 +27,21 @@ impl<S: Simd> Wide<S> {
     #[inline(always)]
     pub fn new(simd: S, value: f64) -> Self {
         Self { simd, lanes: simd.splat_f64s(value) }
+    }
+
+    /// The lanes of a pack that begins at the point `first` of a group.
+    #[inline(always)]
+    pub(super) fn of_group(simd: S, group: &[f64; MAX_LANES], first: usize) -> Self {
+        // The remainder tells the compiler that the index is in bounds.
+        let part = first / S::F64_LANES % (MAX_LANES / S::F64_LANES);
+        Self { simd, lanes: S::as_simd_f64s(group).0[part] }
+    }
+
+    /// Puts the lanes of a pack that begins at the point `first` into their group.
+    #[inline(always)]
+    pub(super) fn put_into(self, group: &mut [f64; MAX_LANES], first: usize) {
+        let part = first / S::F64_LANES % (MAX_LANES / S::F64_LANES);
+        S::as_mut_simd_f64s(group).0[part] = self.lanes;
     }
 
     /// The bare vector.
@@ -112,8 +130,13 @@ impl<S: Simd> Lanes for Wide<S> {
 
     #[inline(always)]
     fn any(mask: WideMask<S>) -> bool {
-        let simd = mask.simd;
-        simd.reduce_max_f64s(simd.select_f64s(mask.lanes, simd.splat_f64s(1.0), simd.splat_f64s(0.0))) > 0.0
+        // A mask is all bits of a lane, or one bit per lane.
+        if const { size_of::<S::m64s>() == 8 * S::F64_LANES } {
+            let lanes: &[u64] = pulp::bytemuck::cast_slice(std::slice::from_ref(&mask.lanes));
+            lanes.iter().fold(0, |bits, lane| bits | lane) != 0
+        } else {
+            pulp::bytemuck::bytes_of(&mask.lanes).iter().fold(0, |bits, byte| bits | byte) != 0
+        }
     }
 }
 

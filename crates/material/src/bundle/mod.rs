@@ -108,7 +108,7 @@ impl BundleLaw {
         out: &mut LaneResponse<V>,
     ) -> V::Mask {
         let update = self.update(input, old);
-        update.write_state(new, input.points, self.slides, self.presses);
+        update.write_state(new, self.slides, self.presses);
         let section = update.section_stress();
         let averaged = input.mean_elongation.is_some();
         update.write_energies(self.presses, out);

@@ -51,10 +51,11 @@ impl<V: Lanes> BundleState<V> {
     /// repeat the last.
     #[inline(always)]
     pub(super) fn read(witness: V, old: &[f64], count: usize, slides: bool, presses: bool) -> Self {
-        let n = len(slides, presses);
         let mut numbers = [witness.splat(0.0); 9];
-        for (at, number) in numbers.iter_mut().enumerate().take(n) {
-            *number = witness.fill(|lane| old[lane.min(count - 1) * n + at]);
+        match (slides, presses) {
+            (false, _) => {}
+            (true, false) => read_numbers::<V, 8>(witness, old, count, &mut numbers),
+            (true, true) => read_numbers::<V, 9>(witness, old, count, &mut numbers),
         }
         let [d1, d2, g2, g3, kappa_t, kappa_l, d_t, d_l, pressure] = numbers;
         Self {
@@ -87,17 +88,50 @@ fn numbers<V: Lanes>(t: &ModeState<V>, l: &ModeState<V>, pressure: V) -> [V; 9] 
     ]
 }
 
-impl<V: Lanes> Update<V> {
-    /// Writes the states of `count` points one after the other.
-    #[inline(always)]
-    pub(super) fn write_state(&self, new: &mut [f64], count: usize, slides: bool, presses: bool) {
-        let n = len(slides, presses);
-        let numbers = numbers(&self.transverse.new, &self.longitudinal.new, self.axial.pressure);
-        for (at, number) in numbers.iter().take(n).enumerate() {
+/// The first `N` numbers of `count` points; a full pack by loops of constant length.
+#[inline(always)]
+fn read_numbers<V: Lanes, const N: usize>(witness: V, old: &[f64], count: usize, numbers: &mut [V; 9]) {
+    let (states, _) = old.as_chunks::<N>();
+    if states.len() == V::COUNT {
+        for (at, number) in numbers[..N].iter_mut().enumerate() {
+            *number = witness.fill(|lane| states[lane][at]);
+        }
+    } else {
+        for (at, number) in numbers[..N].iter_mut().enumerate() {
+            *number = witness.fill(|lane| states[lane.min(count - 1)][at]);
+        }
+    }
+}
+
+/// The first `N` numbers into the states of the points.
+#[inline(always)]
+fn write_numbers<V: Lanes, const N: usize>(new: &mut [f64], numbers: &[V; 9]) {
+    let (states, _) = new.as_chunks_mut::<N>();
+    if states.len() == V::COUNT {
+        for (at, number) in numbers[..N].iter().enumerate() {
             let lanes = number.to_array();
-            for (lane, value) in lanes.iter().take(count.min(V::COUNT)).enumerate() {
-                new[lane * n + at] = *value;
+            for lane in 0..V::COUNT {
+                states[lane][at] = lanes[lane];
             }
+        }
+    } else {
+        for (at, number) in numbers[..N].iter().enumerate() {
+            for (state, value) in states.iter_mut().zip(number.to_array()) {
+                state[at] = value;
+            }
+        }
+    }
+}
+
+impl<V: Lanes> Update<V> {
+    /// Writes the states of the points one after the other.
+    #[inline(always)]
+    pub(super) fn write_state(&self, new: &mut [f64], slides: bool, presses: bool) {
+        let numbers = numbers(&self.transverse.new, &self.longitudinal.new, self.axial.pressure);
+        match (slides, presses) {
+            (false, _) => {}
+            (true, false) => write_numbers::<V, 8>(new, &numbers),
+            (true, true) => write_numbers::<V, 9>(new, &numbers),
         }
     }
 }
