@@ -3,9 +3,11 @@
 
     python3 scripts/growth.py [--binary target/release/subrope] [--out out/growth] [--repeats 3] [FAMILY ...]
 
-Families: length (pitches), section (refinement of the section), strands (their number), cycles (of a helical slice). Every
+Families: length (pitches), section (refinement of the section), strands (their number), cycles (of a helical slice), threads
+(gain of a second one, and whether the bits are the same), largest (one increment of a rope of --pitches, two threads; only
+when asked for). Every
 member but the cycles is a short pull of the
-rope of scenes/sub_rope_cycles.toml in two increments or so, on one thread. Members run interleaved, and the least time of the
+rope of scenes/sub_rope_cycles.toml in two increments or so, on one thread unless said. Members run interleaved, and the least time of the
 repeats counts: what is above it is the machine's. An exponent is that of the cost between neighbours in the table,
 d log cost / d log unknowns.
 """
@@ -54,12 +56,12 @@ def scene(changes):
     return text + PULL
 
 
-def run(args, family, name, text):
+def run(args, family, name, text, threads=1):
     """One run of a member; its summary, or why it failed."""
     folder = args.out / family / name.replace(" ", "_")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.toml").write_text(text)
-    command = [args.binary, "run", folder / "scene.toml", "--out", folder / "results", "--threads", "1"]
+    command = [args.binary, "run", folder / "scene.toml", "--out", folder / "results", "--threads", threads]
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     if done.returncode:
         return None, done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"exit code {done.returncode}"
@@ -130,15 +132,56 @@ def cycles_table(args):
               f"| {summary['peak_memory_mb'] or 0.0:.0f} |", flush=True)
 
 
+def threads_table(args):
+    """Wall time of an iteration on one thread and on two."""
+    print("\n| length | threads | assembly ms | factorisation ms | solution ms | iteration ms | gain | same bits |")
+    print("|" + "---|" * 8)
+    for name, changes in FAMILIES["length"][:4]:
+        best = {}
+        for _ in range(args.repeats):
+            for threads in (1, 2):
+                summary, why = run(args, f"threads_{threads}", name, scene(changes), threads)
+                if summary is None:
+                    print(f"| {name} | {threads} | {why} |" + " |" * 5)
+                    return
+                new = costs(summary)
+                best[threads] = {k: min(v, best.get(threads, new)[k]) for k, v in new.items()}
+        tables = [args.out / f"threads_{t}" / name.replace(" ", "_") / "results" / "history.csv" for t in best]
+        same = "yes" if len({table.read_bytes() for table in tables}) == 1 else "NO"
+        for threads, cost in best.items():
+            gain = f"{best[1]['iteration'] / cost['iteration']:.2f}" if threads > 1 else ""
+            phases = " | ".join(f"{cost[p]:.0f}" for p in PHASES)
+            print(f"| {name} | {threads} | {phases} | {cost['iteration']:.0f} | {gain} | {same if threads > 1 else ''} |", flush=True)
+
+
+def largest(args):
+    """One increment of a rope that fills the memory."""
+    changes = {"length": args.pitches * PITCH, "layers": args.pitches * LAYERS}
+    pull = scene(changes).replace("{ initial = 0.5 }", "{ fixed = 1 }")
+    summary, why = run(args, "largest", f"{args.pitches} pitches", pull, 2)
+    if summary is None:
+        print(f"\n{args.pitches} pitches: {why}")
+        return
+    size, seconds, counts = summary["size"], summary["seconds"], summary["counts"]
+    print(f"\n{args.pitches} pitches, two threads, one increment: {size['elements']} bricks, {size['unknowns']} unknowns, "
+          f"{size['factor_entries'] / 1e6:.0f}e6 entries of the factor, {size['factor_flops'] / 1e9:.0f} GFLOP; "
+          f"{counts['iterations']} iterations in {seconds['solving']:.0f} s, {seconds['total']:.0f} s in all, "
+          f"{summary['peak_memory_mb'] or 0.0:.0f} MB.")
+
+
+OTHERS = {"cycles": cycles_table, "threads": threads_table, "largest": largest}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("families", nargs="*", choices=[*FAMILIES, "cycles", []], default=[*FAMILIES, "cycles"])
+    parser.add_argument("families", nargs="*", choices=[*FAMILIES, *OTHERS, []], default=[*FAMILIES, "cycles", "threads"])
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/subrope")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/growth")
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--pitches", type=int, default=256, help="length of the largest rope")
     args = parser.parse_args()
     for family in args.families:
-        cycles_table(args) if family == "cycles" else family_table(args, family)
+        OTHERS[family](args) if family in OTHERS else family_table(args, family)
 
 
 if __name__ == "__main__":

@@ -309,6 +309,10 @@ fn mean_elongation_does_not_lock() {
     let table = [(2, 0.1822), (4, 0.1844), (8, 0.1849), (16, 0.1846), (32, 0.1842)];
     to_the_digits(Brick::MeanElongation, 100.0, &table, 4);
     to_the_digits(Brick::MeanElongation, 1e4, &[(4, 0.1863), (8, 0.1880)], 4);
+    // No published values on the other meshes.
+    for n in [2, 16, 32] {
+        close(&format!("k = 1e4, n = {n}"), edge_force(Brick::MeanElongation, n, 1e4), 0.188, 0.02);
+    }
     close("n = 4", edge_force(Brick::MeanElongation, 4, 100.0), 0.184, 0.01);
 }
 
@@ -316,7 +320,7 @@ fn mean_elongation_does_not_lock() {
 /// are not unique, and no value is known. What counts: the step is finished, by cutting where plain Newton diverges.
 #[test]
 fn nearly_inextensible_fibres_in_plain_bricks_end_by_cutting_steps() {
-    for n in [4, 8] {
+    for n in [2, 4, 8, 16, 32] {
         for line_search in [true, false] {
             let options = NewtonOptions { force_tolerance: 1e-11, line_search, ..NewtonOptions::default() };
             let (force, recorder) = fibre_block_with(Brick::Plain, n, 1e4, automatic(1.0), options);
@@ -325,7 +329,7 @@ fn nearly_inextensible_fibres_in_plain_bricks_end_by_cutting_steps() {
             assert!(force.unwrap() > 1.0);
             let last = &rows[rows.len() - 1].record;
             assert!(last.fraction == 1.0 && last.residual().is_some_and(|r| r <= 1e-11), "{last:?}");
-            assert!(line_search || failures > 0, "n = {n}: undamped Newton converged at once");
+            assert!(line_search || n < 4 || failures > 0, "n = {n}: undamped Newton converged at once");
         }
     }
 }

@@ -1,0 +1,10 @@
+#!/bin/sh
+# The tests of orders and structures (or those that the arguments name) under valgrind: what they call holds the only unsafe code of the libraries, the two calls of METIS.
+# Reads and writes of METIS beyond the arrays it is given, uninitialised numbers and leaks end in an error.
+set -eu
+cd "$(dirname "$0")/.."
+command -v valgrind >/dev/null 2>&1 || { printf 'memcheck: valgrind is not installed\n' >&2 && exit 1; }
+host=$(rustc -vV | sed -n 's/^host: //p' | tr 'a-z-' 'A-Z_')
+export "CARGO_TARGET_${host}_RUNNER=valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite"
+export PROPTEST_CASES="${PROPTEST_CASES:-8}"
+exec cargo test -p subrope-fem --lib "${@:-structure}" -- --test-threads 1
