@@ -78,6 +78,10 @@ impl Contribution for Bars {
     }
 }
 
+fn options(trust_region: TrustRegion) -> NewtonOptions {
+    NewtonOptions { force_tolerance: 1e-11, trust_region, ..NewtonOptions::default() }
+}
+
 /// Bars `(from, to, EA/L^3)` between points, all of whose coordinates are held but some.
 struct Truss {
     analysis: Analysis,
@@ -99,14 +103,13 @@ impl Truss {
         points: &[[f64; 3]],
         bars: &[(u32, u32, f64)],
         free: &[u32],
-        trust_region: TrustRegion,
+        options: NewtonOptions,
     ) -> Result<Self, FemError> {
         let points: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
         let ends = bars.iter().map(|(a, b, _)| [*a, *b]).collect();
         let stiffness = bars.iter().map(|b| b.2).collect();
         let kinematics = Kinematics::new(points.clone(), Vec::new())?;
         let model = Model { kinematics, contributions: vec![Box::new(Bars { points, ends, stiffness })] };
-        let options = NewtonOptions { force_tolerance: 1e-11, trust_region, ..NewtonOptions::default() };
         Ok(Self { analysis: Analysis::new(model, options, SolverOptions::default(), 1), free: free.to_vec() })
     }
 
@@ -141,9 +144,9 @@ fn limit_force() -> f64 {
 const APEX_DOWN: u32 = 3 * 2 + 2;
 
 /// Two bars on a flat apex; a bar without stiffness holds the body against turning about them.
-fn von_mises(trust_region: TrustRegion) -> Result<Truss, FemError> {
+fn von_mises(options: NewtonOptions) -> Result<Truss, FemError> {
     let points = [[-WIDTH, 0.0, 0.0], [WIDTH, 0.0, 0.0], [0.0, 0.0, HEIGHT], [0.0, 1.0, 0.0]];
-    Truss::new(&points, &[(0, 2, BAR), (1, 2, BAR), (0, 3, 0.0)], &[APEX_DOWN], trust_region)
+    Truss::new(&points, &[(0, 2, BAR), (1, 2, BAR), (0, 3, 0.0)], &[APEX_DOWN], options)
 }
 
 fn push(mut step: Step, coordinate: u32, force: f64) -> Step {
@@ -160,7 +163,7 @@ fn ends_quadratically(record: &IncrementRecord) -> bool {
 
 #[test]
 fn a_minimum_is_found_beyond_a_limit_point() -> Result<(), FemError> {
-    let mut truss = von_mises(TrustRegion::Always)?;
+    let mut truss = von_mises(options(TrustRegion::Always))?;
     let step = push(truss.step(Increments::Fixed(10)), APEX_DOWN, -2.1 * limit_force());
     let records = truss.run(&step)?;
     for record in &records {
@@ -180,10 +183,10 @@ fn a_minimum_is_found_beyond_a_limit_point() -> Result<(), FemError> {
 }
 
 /// A column of two bars in line with a hinge in the middle, which springs hold from both sides.
-fn column(trust_region: TrustRegion) -> Result<Truss, FemError> {
+fn column(options: NewtonOptions) -> Result<Truss, FemError> {
     let points = [[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [-4.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
     let bars = [(0, 1, 100.0), (1, 2, 100.0), (1, 3, 0.01), (1, 4, 0.01), (0, 5, 0.0)];
-    Truss::new(&points, &bars, &[3, 5], trust_region)
+    Truss::new(&points, &bars, &[3, 5], options)
 }
 
 const TOP: u32 = 8;
@@ -191,7 +194,7 @@ const TOP: u32 = 8;
 #[test]
 fn a_bifurcation_is_left_for_the_stable_branch() -> Result<(), FemError> {
     let run = |way| -> Result<_, FemError> {
-        let mut truss = column(way)?;
+        let mut truss = column(options(way))?;
         let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
         let records = truss.run(&step)?;
         Ok((truss.analysis.coordinates()[3], records.last().and_then(|r| r.negative_pivots), truss))
@@ -210,13 +213,30 @@ fn a_bifurcation_is_left_for_the_stable_branch() -> Result<(), FemError> {
 #[test]
 fn newtons_way_is_not_left_where_it_leads_on() -> Result<(), FemError> {
     let run = |way| -> Result<_, FemError> {
-        let mut truss = column(way)?;
+        let mut truss = column(options(way))?;
         let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
         let records = truss.run(&step)?;
         assert!(records.iter().all(|r| !r.minimised));
         Ok(truss.analysis.coordinates().iter().map(|q| q.to_bits()).collect::<Vec<_>>())
     };
     assert_eq!(run(TrustRegion::Auto)?, run(TrustRegion::Off)?);
+    Ok(())
+}
+
+/// Newton's method with too few iterations to fall through is helped, once its increments are as short as they may be.
+#[test]
+fn a_stalled_run_goes_on_by_a_minimisation() -> Result<(), FemError> {
+    let mut truss = von_mises(NewtonOptions { max_iterations: 5, ..options(TrustRegion::Auto) })?;
+    let increments = Increments::Automatic { initial: 0.1, minimum: 1e-3, maximum: 0.1, max_count: 1000 };
+    let step = push(truss.step(increments), APEX_DOWN, -2.1 * limit_force());
+    let records = truss.run(&step)?;
+    let totals = truss.analysis.totals();
+    println!("{totals:?}");
+    assert!(totals.cutbacks > 0 && (1..5).contains(&totals.minimised) && totals.jumps == 1);
+    let jump = records.iter().position(|r| r.minimised && r.released > 0.0);
+    assert!(jump.is_some());
+    let w = -truss.analysis.coordinates()[APEX_DOWN as usize];
+    assert!((apex_force(w) / (2.1 * limit_force()) - 1.0).abs() < 1e-9);
     Ok(())
 }
 
