@@ -79,8 +79,8 @@ fn what_holds_holds_in_other_units_and_far_away() {
 
 #[test]
 fn planted_failures_are_found() {
-    let impossible =
-        "\"step[0].increments\" = { initial = 0.5, minimum = 0.4, maximum = 0.5 }\n\"solver.max_iterations\" = 2";
+    let impossible = "\"step[0].increments\" = { initial = 0.5, minimum = 0.4, maximum = 0.5 }\n\
+        \"solver.max_iterations\" = 2\n\"solver.trust_region\" = \"off\"";
     let stops = format!("[family.set]\n{impossible}");
     let explained = format!("limits = {{ \"*\" = \"two iterations are too few\" }}\n{stops}");
     let wrong = "[family.set]\n\"law.K_e\" = -1.0";
@@ -196,12 +196,22 @@ fn a_snap_is_told() {
 /// Short increments up to the largest load: the tangent becomes singular, and the run says so before it ends there.
 #[test]
 fn the_largest_load_is_told_by_the_inertia() {
-    let Ok(Err(error)) = try_run(ARCH, None, 1) else { panic!("a load beyond the largest was carried") };
+    let newton = &format!("{ARCH}[solver]\ntrust_region = \"off\"\n");
+    let Ok(Err(error)) = try_run(newton, None, 1) else { panic!("a load beyond the largest was carried") };
     assert!(error.to_string().contains("step push through"), "{error}");
-    let run = Run::of(ARCH, Twin::NONE, 60.0, None);
+    let run = Run::of(newton, Twin::NONE, 60.0, None);
     assert!(matches!(run.ended, Ended::Stopped(_)), "{:?}", run.ended);
     assert!(run.measured.inertia_changes > 0 && run.measured.symmetric);
     assert!(run.measured.energy_error.abs() < 1e-2);
+}
+
+/// Where Newton's method ends, the minimum of the potential is on the other side, and the energy of the snap is told.
+#[test]
+fn a_minimum_beyond_the_largest_load_is_told() {
+    let totals = totals(ARCH);
+    assert!(totals.minimised > 0 && totals.jumps > 0 && totals.released > 0.1 * totals.work_scale);
+    assert_eq!(totals.negative_pivots, Some(0));
+    assert!((totals.energy_error() - totals.released / totals.work_scale).abs() < 1e-2);
 }
 
 #[test]

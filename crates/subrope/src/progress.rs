@@ -22,7 +22,9 @@ pub struct StepStart {
 pub enum Outcome {
     /// Equilibrium was found.
     Converged,
-    /// The increment is tried again, shorter.
+    /// Equilibrium was found as a minimum of the incremental potential.
+    Minimised,
+    /// The increment is tried again, shorter or as a minimisation.
     CutBack,
 }
 

@@ -55,6 +55,14 @@ impl Division<'_> {
         }
     }
 
+    /// Whether the next increment has been cut as far as it may be.
+    pub fn is_shortest(&self, at: &Progress) -> bool {
+        match self.step.increments {
+            Increments::Fixed(_) => false,
+            Increments::Automatic { minimum, .. } => (self.next_end(at) - at.done) * self.options.cutback < minimum,
+        }
+    }
+
     /// After a failed attempt.
     ///
     /// # Errors

@@ -7,13 +7,16 @@ use super::factors::KeptFactors;
 use super::newton::Attempt;
 use super::record::{Control, IncrementRecord, Observer, Phase, Phases, Totals};
 use super::rigid::rigid_motions;
-use super::step::{Increments, LoadBefore, NewtonOptions, Step};
+use super::step::{Increments, LoadBefore, NewtonOptions, Step, TrustRegion};
 use super::workspace::Workspace;
 use crate::FemError;
 use crate::assembly::System;
 use crate::contribution::Contribution;
 use crate::kinematics::Kinematics;
 use crate::linear::SolverOptions;
+
+/// Attempts of Newton's method at one increment, each shorter than the last, before the potential is minimised instead.
+const NEWTON_ATTEMPTS: usize = 6;
 
 /// Nodes and what acts on them.
 pub struct Model {
@@ -250,17 +253,20 @@ impl Analysis {
         }
         let division = Division { step, options: self.options };
         let mut attempt = 1;
+        // Why Newton's method ended, while a minimisation is tried in its place.
+        let mut stalled: Option<FemError> = None;
         while self.progress.done < 1.0 {
             division.check_count(&self.progress)?;
             let from = self.progress.done;
             let to = division.next_end(&self.progress);
             let mut record = self.record(step, to, attempt);
             let last_resort = matches!(step.increments, Increments::Fixed(_));
-            match self.attempt(step, Attempt { from, to, last_resort }, &mut record) {
+            let minimise = stalled.is_some() || self.always_minimises();
+            match self.attempt(step, Attempt { from, to, last_resort, minimise }, &mut record) {
                 Ok(()) => {
                     self.time += step.duration * (to - from);
                     division.advance(&mut self.progress, to, record.iterations);
-                    attempt = 1;
+                    (attempt, stalled) = (1, None);
                     if observer.converged(self, &record)? == Control::Stop {
                         return Err(FemError::Interrupted);
                     }
@@ -268,13 +274,31 @@ impl Analysis {
                 Err(cause) => {
                     self.totals.cutbacks += 1;
                     observer.failed(&record, &cause);
-                    division.cut(&mut self.progress, cause)?;
+                    let last = attempt >= NEWTON_ATTEMPTS || division.is_shortest(&self.progress);
+                    if !minimise && last && self.may_minimise(step, &cause) {
+                        stalled = Some(cause);
+                    } else {
+                        let first = stalled.take().filter(|_| cause.is_recoverable());
+                        division.cut(&mut self.progress, first.unwrap_or(cause))?;
+                    }
                     attempt += 1;
                 }
             }
         }
         self.steps_done += 1;
         Ok(())
+    }
+
+    fn always_minimises(&self) -> bool {
+        self.options.trust_region == TrustRegion::Always && self.can_minimise()
+    }
+
+    /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer.
+    fn may_minimise(&self, step: &Step, cause: &FemError) -> bool {
+        self.options.trust_region == TrustRegion::Auto
+            && matches!(step.increments, Increments::Automatic { .. })
+            && matches!(cause, FemError::NotConverged { .. } | FemError::RunsAway { .. } | FemError::Linear(_))
+            && self.can_minimise()
     }
 
     fn begin(&mut self, step: &Step) -> Result<(), FemError> {
@@ -308,6 +332,7 @@ impl Analysis {
             residuals: Vec::new(),
             negative_pivots: None,
             inertia_change: None,
+            minimised: false,
             released: 0.0,
         }
     }

@@ -16,7 +16,7 @@ const ARMIJO: f64 = 1e-4;
 /// Most trial lengths.
 const TRIALS: usize = 8;
 /// Rounding of a sum of energies, over its size.
-const ENERGY_NOISE: f64 = 1e-13;
+pub(super) const ENERGY_NOISE: f64 = 1e-13;
 
 /// A trial length compared with the base.
 struct Comparison {
@@ -27,7 +27,7 @@ struct Comparison {
 }
 
 /// Whether an error is not helped by a shorter correction.
-fn ends_search(error: &FemError) -> bool {
+pub(super) fn ends_search(error: &FemError) -> bool {
     !error.is_recoverable() || matches!(error, FemError::SearchOutdated)
 }
 
@@ -71,13 +71,13 @@ impl Analysis {
     }
 
     /// Evaluates `length` along the correction.
-    fn go(&mut self, work: &mut Workspace, length: f64, request: Request) -> Result<(), FemError> {
+    pub(super) fn go(&mut self, work: &mut Workspace, length: f64, request: Request) -> Result<(), FemError> {
         work.trial.q.copy_from_slice(&work.base.q);
         self.equations()?.scatter_add(length, &work.correction, &mut work.trial.q);
         self.evaluate(&mut work.trial, &work.target, None, request)
     }
 
-    fn settle(&mut self, work: &mut Workspace, length: f64, request: Request) -> Result<(), FemError> {
+    pub(super) fn settle(&mut self, work: &mut Workspace, length: f64, request: Request) -> Result<(), FemError> {
         if request == Request::Residual {
             self.go(work, length, Request::Tangent)?;
         }
@@ -112,11 +112,11 @@ impl Analysis {
     }
 
     /// Makes the potential fit for a search from the base; answers by how much it changes there.
-    fn freeze(&mut self) -> f64 {
+    pub(super) fn freeze(&mut self) -> f64 {
         self.model.contributions.iter_mut().map(|c| c.freeze()).sum()
     }
 
-    fn has_potential(&self) -> bool {
+    pub(super) fn has_potential(&self) -> bool {
         self.model.contributions.iter().all(|c| c.has_potential())
     }
 }

@@ -16,6 +16,8 @@ pub struct Attempt {
     pub to: f64,
     /// Whether to iterate on while there is no headway: nothing shorter can be tried.
     pub last_resort: bool,
+    /// Whether to minimise the incremental potential.
+    pub minimise: bool,
 }
 
 /// Rounding of the residual, over the norm of all element forces, or of stiffness times displacement.
@@ -49,23 +51,37 @@ impl Analysis {
         self.search(None)?;
         let mut work = std::mem::take(&mut self.work);
         work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
-        let mut outcome = self.iterate(&mut work, attempt, record);
+        let mut outcome = self.find(&mut work, attempt, record);
         for _ in 0..SEARCHES {
             if !matches!(outcome, Err(FemError::SearchOutdated)) {
                 break;
             }
             let at = std::mem::take(&mut self.outdated_at);
-            outcome = self.search(Some(&at)).and_then(|()| self.iterate(&mut work, attempt, record));
+            outcome = self.search(Some(&at)).and_then(|()| self.find(&mut work, attempt, record));
         }
         self.totals.iterations += record.iterations;
         if outcome.is_ok() {
             self.totals.note_inertia(record);
             let before = self.ledger(&work, attempt);
             self.commit(&mut work, attempt);
+            if attempt.minimise {
+                self.totals.minimised += 1;
+                // The way of a minimisation is no direction to go on in.
+                self.last_length = 0.0;
+            }
             self.settle_account(&before, record);
         }
         self.work = work;
         outcome
+    }
+
+    /// Finds the state at the end of an attempt, by Newton's method or as a minimum.
+    fn find(&mut self, work: &mut Workspace, attempt: Attempt, record: &mut IncrementRecord) -> Result<(), FemError> {
+        if !attempt.minimise {
+            return self.iterate(work, attempt, record);
+        }
+        record.minimised = true;
+        self.minimise(work, attempt, record)
     }
 
     fn iterate(
@@ -119,13 +135,13 @@ impl Analysis {
     }
 
     /// Whether a contribution has moved its multipliers, so that the iteration must go on.
-    fn review(&mut self) -> Result<bool, FemError> {
+    pub(super) fn review(&mut self) -> Result<bool, FemError> {
         let contributions = &mut self.model.contributions;
         contributions.iter_mut().try_fold(false, |moved, c| Ok(moved | (c.review()? == Verdict::Augmented)))
     }
 
     /// Continues the last increment, or goes along the committed tangent.
-    fn first_iterate(
+    pub(super) fn first_iterate(
         &mut self,
         work: &mut Workspace,
         attempt: Attempt,
@@ -343,7 +359,7 @@ impl Analysis {
     }
 }
 
-fn relative_residual(iterate: &Iterate) -> f64 {
+pub(super) fn relative_residual(iterate: &Iterate) -> f64 {
     if iterate.norm == 0.0 { 0.0 } else { iterate.norm / iterate.reference }
 }
 
@@ -359,7 +375,7 @@ fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
 
 impl Workspace {
     /// Makes the residual of the base, turned round, the right-hand side.
-    fn aim(&mut self, equations: &Equations) {
+    pub(super) fn aim(&mut self, equations: &Equations) {
         equations.gather(&self.base.residual, &mut self.rhs);
         self.rhs.iter_mut().for_each(|v| *v = -*v);
     }

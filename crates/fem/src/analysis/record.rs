@@ -78,6 +78,8 @@ pub struct Totals {
     pub negative_pivots: Option<usize>,
     /// Converged increments at which that number changed.
     pub inertia_changes: usize,
+    /// Converged increments that were found by minimising the incremental potential.
+    pub minimised: usize,
     /// Converged increments with a snap: energy left, or came, that forces and dissipation do not account for.
     pub jumps: usize,
     /// Energy released in them; negative where states of higher energy were jumped to.
@@ -120,6 +122,8 @@ pub struct IncrementRecord {
     pub negative_pivots: Option<usize>,
     /// Negative pivots before and after, where a converged increment has changed their number.
     pub inertia_change: Option<(usize, usize)>,
+    /// Whether the attempt minimised the incremental potential.
+    pub minimised: bool,
     /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none, negative where the state has
     /// more energy than was put in.
     pub released: f64,
@@ -150,7 +154,7 @@ pub trait Observer {
     /// What stops the run, such as results that cannot be written ([`FemError::Observer`]).
     fn converged(&mut self, analysis: &Analysis, record: &IncrementRecord) -> Result<Control, FemError>;
 
-    /// An attempt has failed; the run goes on with a shorter increment.
+    /// An attempt has failed; the run goes on with a shorter increment, or minimises the potential.
     fn failed(&mut self, record: &IncrementRecord, cause: &FemError) {
         let _ = (record, cause);
     }

@@ -149,7 +149,7 @@ fn counts<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N
 }
 
 impl Totals {
-    fn kept(&self) -> ([f64; 13], [u64; 11]) {
+    fn kept(&self) -> ([f64; 13], [u64; 12]) {
         // Taken apart, so that nothing that is added later can be forgotten.
         let Self {
             external_work,
@@ -171,6 +171,7 @@ impl Totals {
             unstable_increments,
             negative_pivots,
             inertia_changes,
+            minimised,
             jumps,
             released,
             open,
@@ -203,11 +204,12 @@ impl Totals {
             negative_pivots.map_or(0, |n| n + 1),
             inertia_changes,
             jumps,
+            minimised,
         ];
         (energies, counts.map(|n| n as u64))
     }
 
-    fn of_kept(energies: [f64; 13], counts: [u64; 11]) -> Self {
+    fn of_kept(energies: [f64; 13], counts: [u64; 12]) -> Self {
         let c = counts.map(|n| n as usize);
         Self {
             external_work: energies[0],
@@ -230,6 +232,7 @@ impl Totals {
             negative_pivots: c[8].checked_sub(1),
             inertia_changes: c[9],
             jumps: c[10],
+            minimised: c[11],
             open: energies[12],
             released: energies[11],
         }

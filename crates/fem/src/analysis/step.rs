@@ -114,6 +114,19 @@ impl Step {
     }
 }
 
+/// When an increment is found as a minimum of the incremental potential within a trust region. That needs a potential and a
+/// symmetric tangent: no friction that grows with pressure, no exact friction of contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TrustRegion {
+    /// Where Newton's method fails again and again, or at the shortest of automatic increments.
+    #[default]
+    Auto,
+    /// Never.
+    Off,
+    /// In every increment: only stable states are found.
+    Always,
+}
+
 /// Settings of the Newton iteration and of the stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonOptions {
@@ -125,6 +138,8 @@ pub struct NewtonOptions {
     pub max_iterations: usize,
     /// Whether corrections may be shortened.
     pub line_search: bool,
+    /// When the incremental potential is minimised instead.
+    pub trust_region: TrustRegion,
     /// Whether the first iterate continues the last increment.
     pub extrapolate: bool,
     /// Whether large factors serve later iterates of an attempt, as the preconditioner of GMRES.
@@ -146,6 +161,7 @@ impl Default for NewtonOptions {
             energy_tolerance: 1e-9,
             max_iterations: 25,
             line_search: true,
+            trust_region: TrustRegion::Auto,
             extrapolate: true,
             keep_factors: true,
             growth: 1.5,

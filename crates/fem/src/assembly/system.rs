@@ -214,6 +214,27 @@ impl System {
         self.solver.condition(&self.values[..nnz])
     }
 
+    /// The diagonal of the matrix.
+    pub(crate) fn diagonal(&self, out: &mut [f64]) {
+        for (i, entry) in out.iter_mut().enumerate() {
+            *entry = self.solver.pattern().slot(i, i).map_or(0.0, |slot| self.values[slot]);
+        }
+    }
+
+    /// Puts other values on the diagonal, until the next tangent is assembled.
+    pub(crate) fn set_diagonal(&mut self, entries: impl Iterator<Item = f64>) {
+        for (i, entry) in entries.enumerate() {
+            if let Some(slot) = self.solver.pattern().slot(i, i) {
+                self.values[slot] = entry;
+            }
+        }
+    }
+
+    /// `out = K x`, without the products beside the matrix.
+    pub(crate) fn multiply(&self, x: &[f64], out: &mut [f64]) -> Result<(), FemError> {
+        Ok(self.solver.pattern().multiply(&self.values[..self.entries()], x, out)?)
+    }
+
     /// Matrix values and pattern, for checks.
     pub fn matrix(&self) -> (&SparsePattern, &[f64]) {
         (self.solver.pattern(), &self.values[..self.entries()])

@@ -54,9 +54,10 @@ impl Observer for Terminal {
         let done = record.step as f64 + record.fraction;
         let outcome = match record.outcome {
             Outcome::Converged => "",
+            Outcome::Minimised => "  minimised",
             Outcome::CutBack => "  cut back",
         };
-        if record.outcome == Outcome::Converged {
+        if record.outcome != Outcome::CutBack {
             self.bar.set_position((done * PARTS as f64) as u64);
         }
         self.line(&format!(

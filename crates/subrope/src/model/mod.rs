@@ -18,14 +18,14 @@ pub(crate) use rigid::size;
 pub use slice::SliceShape;
 
 use nalgebra::Vector3;
-use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, Viscous};
+use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, TrustRegion, Viscous};
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};
 use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError, Repeated};
 use subrope_io::Ignored;
 
 use crate::run::RunError;
-use crate::scene::{End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
+use crate::scene::{self, End, EndKind, HalfCycle, LineSearch, Program, ProgramStep, Scene, SceneFile};
 use crate::{contact, estimate};
 
 /// A scene made ready to solve.
@@ -199,6 +199,11 @@ fn newton(scene: &Scene) -> NewtonOptions {
         energy_tolerance: solver.energy_tolerance,
         max_iterations: solver.max_iterations,
         line_search: solver.line_search == LineSearch::Auto,
+        trust_region: match solver.trust_region {
+            scene::TrustRegion::Auto => TrustRegion::Auto,
+            scene::TrustRegion::Off => TrustRegion::Off,
+            scene::TrustRegion::Always => TrustRegion::Always,
+        },
         extrapolate: solver.extrapolate,
         keep_factors: solver.keep_factors,
         growth: solver.growth,

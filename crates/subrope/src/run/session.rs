@@ -340,7 +340,7 @@ impl subrope_fem::analysis::Observer for Watch<'_> {
         let result = self.output.increment(self.scenery, analysis, record, self.cutbacks, frames);
         self.cutbacks = 0;
         self.keep(result)?;
-        self.tell(record, Outcome::Converged);
+        self.tell(record, if record.minimised { Outcome::Minimised } else { Outcome::Converged });
         self.tell_findings(record);
         let stop = self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if self.checkpoints.is_due(analysis.totals().increments, stop) {

@@ -208,6 +208,8 @@ pub struct CountSummary {
     pub inertia_changes: usize,
     /// Converged increments with a snap.
     pub jumps: usize,
+    /// Converged increments found by minimising the incremental potential.
+    pub minimised: usize,
 }
 
 /// What took how long.
@@ -416,6 +418,7 @@ fn counts(model: &RopeModel) -> CountSummary {
         unstable_increments: t.unstable_increments,
         inertia_changes: t.inertia_changes,
         jumps: t.jumps,
+        minimised: t.minimised,
     }
 }
 

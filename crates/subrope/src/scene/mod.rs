@@ -50,7 +50,7 @@ pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
 pub use rope::{Core, Rope, Symmetry, YarnSense, Yarns};
 pub use sizing::Sizing;
-pub use solver::{LineSearch, Solver, Stabilisation};
+pub use solver::{LineSearch, Solver, Stabilisation, TrustRegion};
 pub use step::{
     Bend, BendAxis, BendEnds, CycleControl, Cycles, Distribution, Incrementation, Increments, NodalForce, PointForce,
     Prescribe, Step, Tension, Traction, Waveform,

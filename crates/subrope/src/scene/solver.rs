@@ -20,6 +20,11 @@ pub struct Solver {
     /// "auto": a line search when a full correction does not improve; on the energy where there is one. "off": full
     /// corrections always.
     pub line_search: LineSearch,
+    /// Minimisation of the incremental potential within a trust region, which ends in a stable state; possible without
+    /// friction that grows with pressure (`mu_t`, `mu_l`) and with `contact.friction = 0` or `contact.tangent =
+    /// "symmetric"`. "auto": where Newton's method fails again and again, or at the shortest of automatic increments.
+    /// "off": never. "always": in every increment.
+    pub trust_region: TrustRegion,
     /// Start each increment from the extrapolated last one.
     pub extrapolate: bool,
     /// Let large factors serve later iterations of an increment as the preconditioner of GMRES, where that costs less than
@@ -47,6 +52,7 @@ impl Default for Solver {
             energy_tolerance: 1e-10,
             max_iterations: 20,
             line_search: LineSearch::Auto,
+            trust_region: TrustRegion::Auto,
             extrapolate: true,
             keep_factors: true,
             growth: 1.5,
@@ -65,6 +71,18 @@ pub enum LineSearch {
     Auto,
     /// Never.
     Off,
+}
+
+/// When to minimise the incremental potential.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TrustRegion {
+    /// Where Newton's method fails again and again, or at the shortest of automatic increments.
+    Auto,
+    /// Never.
+    Off,
+    /// In every increment.
+    Always,
 }
 
 /// Artificial damping against sudden jumps.

@@ -1,0 +1,328 @@
+//! Ways past limit points and bifurcations, on bars and columns whose answers are known in closed form.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use nalgebra::{Matrix3, Vector3};
+use subrope_fem::analysis::{
+    Analysis, Control, IncrementRecord, Increments, Load, Model, NewtonOptions, Observer, Step, StepLoad, TrustRegion,
+};
+use subrope_fem::kinematics::Kinematics;
+use subrope_fem::linear::SolverOptions;
+use subrope_fem::{
+    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter,
+};
+use subrope_geometry::CellKind;
+use subrope_material::{EngineeringConstants, StVenantKirchhoff};
+use subrope_tests::{Brick, Lattice, Problem, Row, brick, constant_frames, rigid, run_scene};
+
+/// Bars of Green strain: `Pi = c/2 e^2`, `e = (l^2 - L^2)/2`, `c = EA/L^3`.
+struct Bars {
+    points: Vec<Vector3<f64>>,
+    ends: Vec<[u32; 2]>,
+    stiffness: Vec<f64>,
+}
+
+impl Contribution for Bars {
+    fn element_count(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn element_nodes(&self, element: usize) -> &[u32] {
+        &self.ends[element]
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn has_potential(&self) -> bool {
+        true
+    }
+
+    fn assemble(
+        &mut self,
+        at: &Configuration<'_>,
+        request: Request,
+        sink: &mut dyn Sink,
+    ) -> Result<Energies, FemError> {
+        let mut out = Energies::default();
+        for (e, (&[a, b], &c)) in self.ends.iter().zip(&self.stiffness).enumerate() {
+            let moved = |n: u32| Vector3::from_fn(|k, _| at.displacement[3 * n as usize + k]);
+            let length = self.points[b as usize] - self.points[a as usize];
+            let change = moved(b) - moved(a);
+            let d = length + change;
+            let strain = length.dot(&change) + 0.5 * change.norm_squared();
+            out.potential += 0.5 * c * strain * strain;
+            let force = d * (c * strain);
+            let block = (d * d.transpose() + Matrix3::identity() * strain) * c;
+            let forces: [f64; 6] = std::array::from_fn(|i| if i % 2 == 0 { -force[i / 2] } else { force[i / 2] });
+            let matrix: [f64; 36] = std::array::from_fn(|i| {
+                let (row, column) = (i / 6, i % 6);
+                let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
+                sign * block[(row / 2, column / 2)]
+            });
+            sink.add(e, &forces, (request == Request::Tangent).then_some(&matrix));
+        }
+        out.stored = out.potential;
+        Ok(out)
+    }
+
+    fn commit(&mut self) {}
+
+    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
+        Ok(())
+    }
+
+    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
+        Ok(())
+    }
+}
+
+fn options(trust_region: TrustRegion) -> NewtonOptions {
+    NewtonOptions { force_tolerance: 1e-11, trust_region, ..NewtonOptions::default() }
+}
+
+/// Bars `(from, to, EA/L^3)` between points, all of whose coordinates are held but some.
+struct Truss {
+    analysis: Analysis,
+    free: Vec<u32>,
+}
+
+#[derive(Default)]
+struct Keep(Vec<IncrementRecord>);
+
+impl Observer for Keep {
+    fn converged(&mut self, _: &Analysis, record: &IncrementRecord) -> Result<Control, FemError> {
+        self.0.push(record.clone());
+        Ok(Control::Continue)
+    }
+}
+
+impl Truss {
+    fn new(
+        points: &[[f64; 3]],
+        bars: &[(u32, u32, f64)],
+        free: &[u32],
+        options: NewtonOptions,
+    ) -> Result<Self, FemError> {
+        let points: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
+        let ends = bars.iter().map(|(a, b, _)| [*a, *b]).collect();
+        let stiffness = bars.iter().map(|b| b.2).collect();
+        let kinematics = Kinematics::new(points.clone(), Vec::new())?;
+        let model = Model { kinematics, contributions: vec![Box::new(Bars { points, ends, stiffness })] };
+        Ok(Self { analysis: Analysis::new(model, options, SolverOptions::default(), 1), free: free.to_vec() })
+    }
+
+    fn step(&self, increments: Increments) -> Step {
+        let coordinates = 0..self.analysis.coordinates().len() as u32;
+        let held = coordinates.filter(|c| !self.free.contains(c));
+        held.fold(Step::new("load", increments), |step, c| step.prescribe(c, 0.0))
+    }
+
+    fn run(&mut self, step: &Step) -> Result<Vec<IncrementRecord>, FemError> {
+        let mut keep = Keep::default();
+        self.analysis.run_step(step, &mut keep)?;
+        Ok(keep.0)
+    }
+}
+
+/// Height and half width of the flat truss of von Mises, and `EA/L^3` of its bars.
+const HEIGHT: f64 = 1.0;
+const WIDTH: f64 = 3.0;
+const BAR: f64 = 2.0;
+
+/// Force on the apex at a deflection: `c (w^3 - 3 h w^2 + 2 h^2 w)` of two bars.
+fn apex_force(w: f64) -> f64 {
+    BAR * w * (w - HEIGHT) * (w - 2.0 * HEIGHT)
+}
+
+/// The largest force, at `w = h (1 - 1/sqrt 3)`.
+fn limit_force() -> f64 {
+    BAR * HEIGHT.powi(3) * 2.0 / 27.0_f64.sqrt()
+}
+
+const APEX_DOWN: u32 = 3 * 2 + 2;
+
+/// Two bars on a flat apex; a bar without stiffness holds the body against turning about them.
+fn von_mises(options: NewtonOptions) -> Result<Truss, FemError> {
+    let points = [[-WIDTH, 0.0, 0.0], [WIDTH, 0.0, 0.0], [0.0, 0.0, HEIGHT], [0.0, 1.0, 0.0]];
+    Truss::new(&points, &[(0, 2, BAR), (1, 2, BAR), (0, 3, 0.0)], &[APEX_DOWN], options)
+}
+
+fn push(mut step: Step, coordinate: u32, force: f64) -> Step {
+    let load = Load { nodal: Vec::new(), coordinates: vec![(coordinate, force)] };
+    step.loads.push(StepLoad { load, path: std::sync::Arc::new(|fraction, _| fraction) });
+    step
+}
+
+/// Each residual at most a constant times the square of the one before, over the last iterations.
+fn ends_quadratically(record: &IncrementRecord) -> bool {
+    let r = &record.residuals;
+    r.windows(2).filter(|w| w[0] < 1e-2 && w[1] > 1e-13).all(|w| w[1] < 30.0 * w[0] * w[0])
+}
+
+#[test]
+fn a_minimum_is_found_beyond_a_limit_point() -> Result<(), FemError> {
+    let mut truss = von_mises(options(TrustRegion::Always))?;
+    let step = push(truss.step(Increments::Fixed(10)), APEX_DOWN, -2.1 * limit_force());
+    let records = truss.run(&step)?;
+    for record in &records {
+        println!("{} {:?} {:?} {:e}", record.fraction, record.negative_pivots, record.residuals, record.released);
+        assert!(record.minimised && record.negative_pivots == Some(0));
+        assert!(ends_quadratically(record));
+    }
+    let w = -truss.analysis.coordinates()[APEX_DOWN as usize];
+    assert!(w > 2.0 * HEIGHT);
+    assert!((apex_force(w) / (2.1 * limit_force()) - 1.0).abs() < 1e-9);
+    let totals = truss.analysis.totals();
+    assert_eq!((totals.jumps, totals.minimised, totals.cutbacks), (1, 10, 0));
+    // The apex falls through between .84 and 1.05 times the largest force.
+    assert_eq!(records.iter().position(|r| r.released != 0.0), Some(4));
+    assert!(totals.released > 0.0);
+    Ok(())
+}
+
+/// A column of two bars in line with a hinge in the middle, which springs hold from both sides.
+fn column(options: NewtonOptions) -> Result<Truss, FemError> {
+    let points = [[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [-4.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+    let bars = [(0, 1, 100.0), (1, 2, 100.0), (1, 3, 0.01), (1, 4, 0.01), (0, 5, 0.0)];
+    Truss::new(&points, &bars, &[3, 5], options)
+}
+
+const TOP: u32 = 8;
+
+#[test]
+fn a_bifurcation_is_left_for_the_stable_branch() -> Result<(), FemError> {
+    let run = |way| -> Result<_, FemError> {
+        let mut truss = column(options(way))?;
+        let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
+        let records = truss.run(&step)?;
+        Ok((truss.analysis.coordinates()[3], records.last().and_then(|r| r.negative_pivots), truss))
+    };
+    let (straight, pivots, newton) = run(TrustRegion::Off)?;
+    assert_eq!((straight, pivots), (0.0, Some(1)), "Newton's method stays on the symmetric branch");
+    let (bent, pivots, minimum) = run(TrustRegion::Always)?;
+    assert_eq!(pivots, Some(0));
+    // Bars that hardly shorten: x^2 + .9^2 = 1 - what the springs press them by.
+    assert!((bent.abs() - 0.19_f64.sqrt()).abs() < 0.01, "{bent}");
+    let stored = |truss: &Truss| truss.analysis.totals().stored;
+    assert!(stored(&minimum) < 0.2 * stored(&newton), "{} {}", stored(&minimum), stored(&newton));
+    Ok(())
+}
+
+#[test]
+fn newtons_way_is_not_left_where_it_leads_on() -> Result<(), FemError> {
+    let run = |way| -> Result<_, FemError> {
+        let mut truss = column(options(way))?;
+        let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
+        let records = truss.run(&step)?;
+        assert!(records.iter().all(|r| !r.minimised));
+        Ok(truss.analysis.coordinates().iter().map(|q| q.to_bits()).collect::<Vec<_>>())
+    };
+    assert_eq!(run(TrustRegion::Auto)?, run(TrustRegion::Off)?);
+    Ok(())
+}
+
+/// Newton's method with too few iterations to fall through is helped, once its increments are as short as they may be.
+#[test]
+fn a_stalled_run_goes_on_by_a_minimisation() -> Result<(), FemError> {
+    let mut truss = von_mises(NewtonOptions { max_iterations: 5, ..options(TrustRegion::Auto) })?;
+    let increments = Increments::Automatic { initial: 0.1, minimum: 1e-3, maximum: 0.1, max_count: 1000 };
+    let step = push(truss.step(increments), APEX_DOWN, -2.1 * limit_force());
+    let records = truss.run(&step)?;
+    let totals = truss.analysis.totals();
+    println!("{totals:?}");
+    assert!(totals.cutbacks > 0 && (1..5).contains(&totals.minimised) && totals.jumps == 1);
+    let jump = records.iter().position(|r| r.minimised && r.released > 0.0);
+    assert!(jump.is_some());
+    let w = -truss.analysis.coordinates()[APEX_DOWN as usize];
+    assert!((apex_force(w) / (2.1 * limit_force()) - 1.0).abs() < 1e-9);
+    Ok(())
+}
+
+/// Length and thickness of a column of 27-node bricks that is clamped at both ends.
+const LENGTH: f64 = 40.0;
+const THICKNESS: f64 = 2.0;
+const YOUNG: f64 = 100.0;
+
+fn clamped_column(trust_region: TrustRegion) -> Result<(Problem, Vec<Row>), FemError> {
+    let lattice = Lattice::new([1, 1, 10], CellKind::Hex27);
+    let mesh = lattice.mesh(|[x, y, z]| [3.0 * x, THICKNESS * y, LENGTH * z]);
+    let [e1, e2, e3] = [YOUNG; 3];
+    let [g12, g13, g23] = [0.5 * YOUNG; 3];
+    let constants = EngineeringConstants { e1, e2, e3, nu12: 0.0, nu13: 0.0, nu23: 0.0, g12, g13, g23 };
+    let law = StVenantKirchhoff::orthotropic(&constants).unwrap();
+    let solid = brick(Brick::Quadratic, &mesh, &constant_frames(&mesh, Matrix3::identity()), law)?;
+    let ends = [("foot", 0.0, false), ("head", LENGTH, true)];
+    let section =
+        |(name, z, far): (&str, f64, bool)| rigid(name, Vector3::new(1.5, 0.5 * THICKNESS, z), &lattice.face(2, far));
+    let options = NewtonOptions { force_tolerance: 1e-9, trust_region, ..NewtonOptions::default() };
+    let mut problem = Problem::with(&mesh, solid, ends.map(section).to_vec(), options)?;
+    let step = problem.step(Increments::Fixed(8)).hold(0, &[]).hold(1, &[]).point(1, 2, -0.02 * LENGTH).build();
+    let rows = problem.run(&step)?;
+    Ok((problem, rows))
+}
+
+/// Euler's column of bricks: straight up to its load, bent beyond it.
+#[test]
+fn a_clamped_column_buckles_at_eulers_load() -> Result<(), FemError> {
+    let (problem, rows) = clamped_column(TrustRegion::Always)?;
+    let area = 3.0 * THICKNESS;
+    let slender = THICKNESS * THICKNESS / 12.0 * (2.0 * std::f64::consts::PI / LENGTH).powi(2);
+    // With the shear between sections, of which 5/6 count.
+    let critical = YOUNG * area * slender / (1.0 + 1.2 * YOUNG * slender / (0.5 * YOUNG));
+    for row in &rows {
+        let force = -row.reaction[1][0].z / critical;
+        println!("{:.4} {force:.4} {:?} {:.3e}", row.record.fraction, row.record.residuals, row.record.released);
+        assert_eq!(row.record.negative_pivots, Some(0));
+        assert!(ends_quadratically(&row.record));
+        if row.record.fraction * 0.02 > 1.1 * slender {
+            assert!((force - 1.0).abs() < 0.02, "{force}");
+        }
+    }
+    let sideways = problem.analysis.displacement().chunks_exact(3).map(|u| u[1].abs()).fold(0.0, f64::max);
+    // A cosine that takes up the length that the column is too long.
+    let amplitude = (4.0 * (0.02 - slender)).sqrt() * LENGTH / std::f64::consts::PI;
+    assert!((sideways / amplitude - 1.0).abs() < 0.05, "{sideways} {amplitude}");
+    let (_, straight) = clamped_column(TrustRegion::Off)?;
+    let last = straight.last().unwrap();
+    assert!(last.record.negative_pivots > Some(0) && -last.reaction[1][0].z > 2.0 * critical);
+    Ok(())
+}
+
+/// The shipped bent strand with other parameters of its law.
+fn bent_strand(parameters: &[(&str, f64)]) -> String {
+    let mut text = include_str!("../../scenes/bent_strand.toml").to_owned();
+    for (key, value) in parameters {
+        let start = text.find(&format!("\n{key} = ")).unwrap() + key.len() + 4;
+        let end = start + text[start..].find([' ', '\n']).unwrap();
+        text.replace_range(start..end, &format!("{value:?}"));
+    }
+    text
+}
+
+/// Two parameter sets on which Newton's method alone has stalled, at 61 and 53 degrees in another program.
+#[test]
+#[ignore = "minutes: cargo nextest run -p subrope-tests --test ways --run-ignored only"]
+fn harder_strands_are_bent_to_the_end() {
+    let softer = [("K_e", 1000.0), ("K_t", 15.0), ("K_l", 15.0), ("tau_l", 1.5)];
+    let narrower = [
+        ("K_ec", 40.0),
+        ("w_e", 0.003),
+        ("nu", 0.3),
+        ("K_c", 20.0),
+        ("K_t", 4.0),
+        ("tau_t", 0.2),
+        ("H_t", 0.4),
+        ("K_l", 30.0),
+        ("tau_l", 1.2),
+        ("H_l", 0.5),
+    ];
+    for parameters in [&softer[..], &narrower] {
+        let run = run_scene(&bent_strand(parameters), None);
+        let totals = run.model.analysis.totals();
+        println!("{totals:?}");
+        let told = totals.released / totals.work_scale;
+        assert!((totals.energy_error() - told).abs() < 1e-2, "a jump is told");
+    }
+}
