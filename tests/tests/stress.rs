@@ -205,15 +205,6 @@ fn the_largest_load_is_told_by_the_inertia() {
     assert!(run.measured.energy_error.abs() < 1e-2);
 }
 
-/// Where Newton's method ends, the minimum of the potential is on the other side, and the energy of the snap is told.
-#[test]
-fn a_minimum_beyond_the_largest_load_is_told() {
-    let totals = totals(ARCH);
-    assert!(totals.minimised > 0 && totals.jumps > 0 && totals.released > 0.1 * totals.work_scale);
-    assert_eq!(totals.negative_pivots, Some(0));
-    assert!((totals.energy_error() - totals.released / totals.work_scale).abs() < 1e-2);
-}
-
 #[test]
 fn smooth_paths_release_nothing() {
     let first = |text: &str| text.split("[[step]]\nname = \"push").next().map(str::to_owned).unwrap();
