@@ -14,7 +14,8 @@ pub const INCIDENCE: Incidence = [[-1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0], 
 /// ```
 ///
 /// with `w = t` at rest and l the length of the edge there. A rigid section turns w with it, so that
-/// `|t - w| = 2 sin(theta/2)`; it stands for the half edge `l/2` next to the clamp, over which a line of curvature kappa turns by
+/// `|t - w| = 2 sin(theta/2)`; it stands for the half edge `l/2` next to the clamp, over which a line of curvature
+/// kappa turns by
 /// `theta = kappa l/2`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold {

@@ -1,9 +1,9 @@
 //! Bending stiffness of lines of nodes: rods that a mesh follows, and whose bending its bricks do not know of.
 //!
 //! The energy of a line is that of a rod of stiffness EI, `EI/2` times the integral of the square of the change of its
-//! curvature vector from rest, seen from the matter around it ([`turning`]); at an end that a rigid section clamps, the half edge
-//! next to it counts as well ([`hold`]). Elastic, symmetric, objective, stress-free at rest; second order in the
-//! length of the edges.
+//! curvature vector from rest, seen from the matter around it ([`turning`]); at an end that a rigid section clamps,
+//! the half edge next to it counts as well ([`hold`]). Elastic, symmetric, objective, stress-free at rest; second
+//! order in the length of the edges.
 
 mod arms;
 mod hold;
@@ -29,8 +29,8 @@ const BATCH: usize = 128;
 pub struct BendingLine {
     /// Its nodes, one after the other; three at least.
     pub nodes: Vec<u32>,
-    /// Of every node of the line two nodes beside it that move with the matter there; their arms and the line are not in
-    /// one plane. The first tells how the line turns with the matter.
+    /// Of every node of the line two nodes beside it that move with the matter there; their arms and the line are not
+    /// in one plane. The first tells how the line turns with the matter.
     pub beside: Vec<[u32; 2]>,
     /// Bending stiffness EI \[N mm^2\].
     pub stiffness: f64,

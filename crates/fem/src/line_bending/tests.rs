@@ -71,7 +71,8 @@ fn displacement(rest: &[Station], now: &[Station]) -> Vec<f64> {
     positions(rest).iter().zip(positions(now)).flat_map(|(x, y)| <[f64; 3]>::from(y - x)).collect()
 }
 
-/// Energy of a line of `edges` edges, clamped or not, that goes from one curve to another \[mJ\]; both are given over 0 to 1.
+/// Energy of a line of `edges` edges, clamped or not, that goes from one curve to another \[mJ\]; both are given over
+/// 0 to 1.
 fn energy(edges: usize, clamped: bool, rest: impl Fn(f64) -> Station, now: impl Fn(f64) -> Station) -> f64 {
     let stations =
         |curve: &dyn Fn(f64) -> Station| -> Vec<_> { (0..=edges).map(|i| curve(i as f64 / edges as f64)).collect() };
@@ -136,7 +137,8 @@ fn a_yarn_of_a_twisted_strand_has_the_energy_of_its_change_of_curvature() {
     // Turning by length at rest.
     let change = curvature(turns[1]) * stretch(turns[1]) / stretch(turns[0]) - curvature(turns[0]);
     let exact = 0.5 * EI * change * change * length * stretch(turns[0]);
-    // Sections that stay plane while yarns change their angle are no clamps; the half edges at the ends do not count then.
+    // Sections that stay plane while yarns change their angle are no clamps; the half edges at the ends do not count
+    // then.
     converges(exact, |edges| {
         let counted = (edges - 1) as f64 / edges as f64;
         energy(edges, false, helix(a, length, turns[0]), helix(a, length, turns[1])) / counted

@@ -14,10 +14,11 @@ pub const INCIDENCE: Incidence = [[-1.0, 1.0, 0.0, 0.0], [0.0, -1.0, 1.0, 0.0], 
 /// W = EI/(2 l) |w - w_rest|^2,   w = (k.m1, k.m2),   k = 2 t1 x t2/(1 + t1.t2)
 /// ```
 ///
-/// with `t1`, `t2` the directions of the edges, `l` the mean of their lengths at rest, and `k` the curvature binormal of
-/// discrete elastic rods, of length `2 tan(theta/2)` for an angle theta between the edges. What the line turns about is told
-/// in the frame of the matter: `t = (t1 + t2)/|t1 + t2|`, `m1` the part normal to t of the arm d to a node beside, made a unit
-/// vector, `m2 = t x m1`. With `S = 2 (1 + t1.t2)` and `U = S d.d - (t1.d + t2.d)^2` that comes to
+/// with `t1`, `t2` the directions of the edges, `l` the mean of their lengths at rest, and `k` the curvature binormal
+/// of discrete elastic rods, of length `2 tan(theta/2)` for an angle theta between the edges. What the line turns
+/// about is told in the frame of the matter: `t = (t1 + t2)/|t1 + t2|`, `m1` the part normal to t of the arm d to a
+/// node beside, made a unit vector, `m2 = t x m1`. With `S = 2 (1 + t1.t2)` and `U = S d.d - (t1.d + t2.d)^2` that
+/// comes to
 ///
 /// ```text
 /// k.m1 = 4 det(t1, t2, d)/sqrt(S U),   k.m2 = 2 (t2.d - t1.d)/sqrt(U)
