@@ -29,6 +29,15 @@ pub enum FemError {
         /// Mean of J over the element.
         ratio: f64,
     },
+    /// A line of nodes with a bending stiffness has no direction at a node, or folds back there.
+    #[error(
+        "the line of nodes that bends at node {node} (from 0) folds back, or an edge of it vanished: shorten the increment; \
+         at rest, give the mesh edges of some length along and across the line"
+    )]
+    FoldedLine {
+        /// Index of the node.
+        node: usize,
+    },
     /// The residual holds a number that is not finite.
     #[error("the residual is not finite: shorten the increment")]
     NonFiniteResidual,
@@ -232,6 +241,7 @@ impl FemError {
         match self {
             Self::Law { source, .. } => !matches!(source, LawError::Parameter { .. } | LawError::NoFibreTerm),
             Self::MeanVolume { .. }
+            | Self::FoldedLine { .. }
             | Self::NonFiniteResidual
             | Self::RunsAway { .. }
             | Self::SearchOutdated

@@ -9,6 +9,7 @@ mod assembly;
 mod contribution;
 mod error;
 pub mod kinematics;
+mod line_bending;
 pub mod linear;
 pub mod parallel;
 mod repeated;
@@ -18,6 +19,7 @@ pub mod state;
 pub use assembly::{Assembled, Equations, Evaluation, Jump, System};
 pub use contribution::{Configuration, Contribution, Energies, Product, Request, Sink, Verdict};
 pub use error::FemError;
+pub use line_bending::{BendingLine, LineBending};
 pub use repeated::Repeated;
 pub use state::{StateError, StateReader, StateWriter};
 

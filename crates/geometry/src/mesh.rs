@@ -1,10 +1,12 @@
 //! Hexahedral meshes with named node sets, element sets and surfaces.
 
 mod faces;
+mod lines;
 mod unused;
 mod validate;
 
 pub use faces::exterior_faces;
+pub use lines::NodeLines;
 
 use crate::GeometryError;
 use nalgebra::Vector3;
