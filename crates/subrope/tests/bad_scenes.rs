@@ -272,6 +272,16 @@ fn laws_and_elements() {
 }
 
 #[test]
+fn rope_yarns_that_bend() {
+    let bending = "[strand.yarn_bending]\nyarns = 10\nstiffness = 20.0\n\n[strand.mesh]\n";
+    expect("[strand.mesh]\n", bending, &["run along its axis", "lines = \"yarns\"", "[strand.yarn_bending]"]);
+    let one_layer = bending.to_owned() + "lines = \"yarns\"\nlayers = 1\n";
+    expect("[strand.mesh]\n", &one_layer, &["no mesh line has an inner node", "layers = 2"]);
+    expect("[strand.mesh]\n", &bending.replace("20.0", "0.0"), &["`stiffness`"]);
+    expect("[strand.mesh]\n", &bending.replace("yarns = 10\n", ""), &["[strand.yarn_bending] needs the key `yarns`"]);
+}
+
+#[test]
 fn syntax() {
     expect("[strand]", "[strand", &["bad.toml:3:"]);
     expect("radius = 2.785", "radius = ", &["bad.toml:4:"]);

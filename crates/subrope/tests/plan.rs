@@ -36,6 +36,20 @@ fn an_elastic_strand_has_no_state_no_contact_and_half_a_matrix() {
 }
 
 #[test]
+fn rope_yarns_bend_where_the_scene_says_so() {
+    let (without, model) = plan("strand_tension.toml", |_| {});
+    assert!(leaves_out(&without, "yarns", "bending stiffness"), "{without}");
+    let count = model.analysis.model().contributions.len();
+    let (with, model) = plan("strand_tension.toml", |file| {
+        let bending = subrope::scene::YarnBending { yarns: 10, stiffness: 20.0 };
+        file.scene.strand.as_mut().unwrap().yarn_bending = Some(bending);
+    });
+    assert!(part(&with, "yarns").uses.contains("10 that bend with EI = 20 N mm^2"), "{with}");
+    assert_eq!(model.analysis.model().contributions.len(), count + 1);
+    assert!(model.analysis.system().unwrap().is_symmetric());
+}
+
+#[test]
 fn state_and_system_follow_what_the_law_needs() {
     let (sliding, model) = plan("bent_strand_coarse.toml", |_| {});
     assert!(leaves_out(&sliding, "law", "back stress") && leaves_out(&sliding, "law", "pressure"), "{sliding}");

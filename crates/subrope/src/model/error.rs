@@ -84,6 +84,12 @@ pub enum ModelError {
         /// The law.
         law: &'static str,
     },
+    /// Rope-yarns that bend without mesh lines along them.
+    #[error(
+        "the mesh has no lines of nodes from end to end along the rope-yarns, which their bending stiffness needs: leave \
+         out [strand.yarn_bending]"
+    )]
+    NoYarnLines,
     /// The normal of a section free in radius is not defined.
     #[error("the nodes of section \"{name}\" do not span a plane, so that they have no radius")]
     NoSectionNormal {

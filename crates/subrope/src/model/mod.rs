@@ -8,6 +8,7 @@ mod rigid;
 mod rope;
 mod slice;
 mod steps;
+mod yarns;
 
 pub use crate::contact::ContactCells;
 pub use error::ModelError;
@@ -117,6 +118,9 @@ fn whole_model(scene: &Scene, mesh: &MeshModel) -> Result<Parts, ModelError> {
     let contacts = contact::contacts(scene, mesh, &bodies, &positions)?;
     let kinematics = Kinematics::new(positions, sections)?;
     let mut contributions: Vec<Box<dyn Contribution>> = vec![solid];
+    if let Some(bending) = yarns::bending(scene, mesh)? {
+        contributions.push(Box::new(bending));
+    }
     let mut contact_cells = Vec::with_capacity(contacts.len());
     for (contact, cells) in contacts {
         contributions.push(contact);

@@ -24,6 +24,9 @@ pub struct Findings {
     pub mean_curvature_per_mm: f64,
     /// Largest curvature between neighbouring sections \[1/mm\].
     pub largest_curvature_per_mm: f64,
+    /// Length of the peak of curvature that holds it: of the stretch in which the curvature exceeds half of the largest
+    /// \[mm\].
+    pub curvature_peak_length_mm: f64,
     /// Zones of high curvature, lowest first: maxima above 1.5 times the mean, a diameter apart.
     pub curvature_zones: Vec<Zone>,
     /// Whether the zones mirror each other: |sum of their z| about the middle over the length \[-\].
@@ -149,6 +152,7 @@ impl Findings {
         Some(Self {
             mean_curvature_per_mm: mean,
             largest_curvature_per_mm: curvature.iter().map(|(_, c)| *c).fold(0.0, f64::max),
+            curvature_peak_length_mm: peak_length(&curvature, (first.z, last.z)),
             zone_asymmetry: zones.iter().map(|z| z.z_mm).sum::<f64>().abs() / length,
             curvature_zones: zones,
             out_of_plane_mm: sections.iter().map(|s| s.displacement.dot(&axis).abs()).fold(0.0, f64::max),
@@ -174,6 +178,21 @@ fn curvatures(sections: &[SectionShape]) -> Vec<(f64, f64)> {
             (0.5 * (pair[0].z + pair[1].z), bend / (pair[1].z - pair[0].z))
         })
         .collect()
+}
+
+/// Length of the stretch around the largest curvature in which the curvature, linear between the middles of the layers
+/// and constant beyond the last, exceeds half of it \[mm\]; `ends` are the coordinates of the end sections.
+fn peak_length(curvature: &[(f64, f64)], ends: (f64, f64)) -> f64 {
+    let Some(at) = (0..curvature.len()).max_by(|&i, &j| curvature[i].1.total_cmp(&curvature[j].1)) else { return 0.0 };
+    let half = 0.5 * curvature[at].1;
+    let crossing = |pair: (&(f64, f64), &(f64, f64))| {
+        let (&(inside, high), &(outside, low)) = pair;
+        (low < half).then(|| inside + (outside - inside) * (high - half) / (high - low))
+    };
+    let above = curvature[at..].iter().zip(&curvature[at + 1..]).find_map(crossing);
+    let below =
+        curvature[..at].iter().rev().zip(curvature[..=at].iter().rev()).find_map(|(out, inn)| crossing((inn, out)));
+    above.unwrap_or(ends.1) - below.unwrap_or(ends.0)
 }
 
 /// Sum of the spatial rotations from section to section \[rad\]: in plane bending all turn about one axis, and there is no
@@ -246,4 +265,21 @@ fn volume_fraction(densest_first: &[(f64, f64, usize)], share: f64) -> f64 {
         used += v;
     }
     used / volume
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_of_a_peak_at_half_its_height() {
+        // A triangle from 0 at z = 2 over 1 at z = 4 to 0 at z = 8 on a line of 10.
+        let triangle = |z: f64| ((z - 2.0) / 2.0).min((8.0 - z) / 4.0).max(0.0);
+        let samples: Vec<_> = (0..20).map(|i| 0.5 * f64::from(i)).map(|z| (z, triangle(z))).collect();
+        assert!((peak_length(&samples, (0.0, 10.0)) - 3.0).abs() < 1e-12);
+        // At an end the peak reaches up to it, and a constant curvature from end to end.
+        let ramp: Vec<_> = (0..10).map(|i| (f64::from(i) + 0.5, f64::from(i) + 0.5)).collect();
+        assert!((peak_length(&ramp, (0.0, 10.0)) - 5.25).abs() < 1e-12);
+        assert!((peak_length(&[(0.5, 1.0), (1.5, 1.0)], (0.0, 2.0)) - 2.0).abs() < 1e-12);
+    }
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use subrope_fem::FemError;
 use subrope_fem::analysis::Phase;
 use subrope_fem::kinematics::NodeRule;
+use subrope_fem::{FemError, LineBending};
 
 use super::clock::Reading;
 use super::cycles::CycleRow;
@@ -14,7 +14,7 @@ use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, con
 use super::strands::{self, StrandSummary};
 use crate::contact::{self, PairSummary};
 use crate::model::RopeModel;
-use crate::plan::Plan;
+use crate::plan::{Plan, line_bending};
 use crate::scene::SceneFile;
 use crate::sizing::{RopeSizing, SizingSummary};
 
@@ -135,6 +135,9 @@ pub struct EnergySummary {
     pub external_work_mj: f64,
     /// Stored.
     pub stored_mj: f64,
+    /// Of it in the bending of rope-yarns, where they have a stiffness of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stored_in_yarn_bending_mj: Option<f64>,
     /// Dissipated by transverse sliding, end values as in the fields.
     pub dissipated_transverse_mj: f64,
     /// Dissipated by longitudinal sliding, end values as in the fields.
@@ -371,9 +374,11 @@ fn points(model: &RopeModel) -> BTreeMap<String, PointSummary> {
 
 fn energies(model: &RopeModel) -> EnergySummary {
     let t = model.analysis.totals();
+    let bending = model.analysis.model().contributions.iter().find_map(|c| line_bending(c.as_ref()));
     EnergySummary {
         external_work_mj: t.external_work,
         stored_mj: t.stored,
+        stored_in_yarn_bending_mj: bending.map(LineBending::stored),
         dissipated_transverse_mj: t.dissipated[0],
         dissipated_longitudinal_mj: t.dissipated[1],
         dissipated_transverse_midpoint_mj: t.dissipated_mid[0],

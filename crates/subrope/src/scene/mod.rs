@@ -55,7 +55,7 @@ pub use step::{
     Bend, BendAxis, BendEnds, CycleControl, Cycles, Distribution, Incrementation, Increments, NodalForce, PointForce,
     Prescribe, Step, Tension, Traction, Waveform,
 };
-pub use strand::{Hand, MeshLines, Origin, SectionArea, Strand, StrandMesh};
+pub use strand::{Hand, MeshLines, Origin, SectionArea, Strand, StrandMesh, YarnBending};
 
 /// The node sets of a generated strand.
 pub const STRAND_SETS: [&str; 6] = ["END_A", "END_B", "LATERAL", "SURFACE_NODES", "AXIS", "ALL"];

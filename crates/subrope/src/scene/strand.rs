@@ -31,12 +31,35 @@ pub struct Strand {
     /// Where z = 0 lies: in the "middle" of the strand or at its "bottom" (END_A).
     #[serde(default)]
     pub origin: Origin,
+    /// Bending stiffness of the rope-yarns themselves, none when left out; needs mesh lines that follow them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yarn_bending: Option<YarnBending>,
     /// Division into hexahedra.
     #[serde(default)]
     pub mesh: StrandMesh,
 }
 
+/// Bending stiffness of the rope-yarns of a strand: of every mesh line along them, `EI/2` times the integral of the square
+/// of the change of its curvature from rest. The lines share `yarns` times `stiffness` by the volume around them. Rigid
+/// ends hold the direction of the rope-yarns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct YarnBending {
+    /// Rope-yarns in the strand \[-\].
+    #[schemars(range(min = 1, max = MAX_COUNT))]
+    pub yarns: usize,
+    /// Bending stiffness EI of one rope-yarn \[N mm^2\].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: f64,
+}
+
 impl Strand {
+    /// Whether the mesh has lines of nodes along the rope-yarns.
+    #[must_use]
+    pub fn has_lines_along_yarns(&self) -> bool {
+        self.mesh.lines == MeshLines::Yarns || self.surface_tangent() == 0.0
+    }
+
     /// Tangent of the angle between the rope-yarns at the surface and the axis, negative for a left-hand lay \[-\].
     #[must_use]
     pub fn surface_tangent(&self) -> f64 {

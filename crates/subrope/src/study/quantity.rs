@@ -44,7 +44,7 @@ const fn known_as(name: &'static str, unit: &'static str, kind: Kind) -> Known {
     Known { name, unit, kind }
 }
 
-const KNOWN: [Known; 20] = [
+const KNOWN: [Known; 21] = [
     known_as("force", "N", Kind::Point("force_n", Part::Magnitude)),
     known_as("tension", "N", Kind::Point("force_n", Part::Axial)),
     known_as("moment", "N mm", Kind::Point("moment_n_mm", Part::Magnitude)),
@@ -62,6 +62,7 @@ const KNOWN: [Known; 20] = [
     known_as("contact_pressure", "MPa", Kind::Contacts("largest_pressure_mpa", Over::Largest)),
     known_as("penetration", "mm", Kind::Contacts("largest_penetration_mm", Over::Largest)),
     known_as("curvature_peak", "1/mm", Kind::Summary("/findings/largest_curvature_per_mm")),
+    known_as("curvature_peak_length", "mm", Kind::Summary("/findings/curvature_peak_length_mm")),
     known_as("ovality", "-", Kind::Summary("/findings/largest_ovality")),
     known_as("out_of_plane", "mm", Kind::Summary("/findings/out_of_plane_mm")),
     known_as("approach", "mm", Kind::Summary("/findings/approach_mm")),

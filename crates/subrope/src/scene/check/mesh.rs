@@ -47,6 +47,24 @@ impl Checker<'_> {
             }
             _ => {}
         }
+        self.yarn_bending(strand);
+    }
+
+    /// The bending stiffness of rope-yarns belongs to mesh lines along them, and those bend at inner nodes.
+    fn yarn_bending(&mut self, strand: &Strand) {
+        if strand.yarn_bending.is_none() {
+            return;
+        }
+        let at = top("strand").at("yarn_bending");
+        if !strand.has_lines_along_yarns() {
+            let cause =
+                "the mesh lines of the strand run along its axis, and rope-yarns that bend need lines along them";
+            self.inconsistent(&at, cause, "set lines = \"yarns\" in [strand.mesh], or leave out [strand.yarn_bending]");
+        }
+        if strand.mesh.layers < 2 {
+            let cause = "in one layer of bricks no mesh line has an inner node at which it could bend";
+            self.inconsistent(&at, cause, "layers = 2 or more in [strand.mesh]");
+        }
     }
 
     fn deck(&mut self, deck: &Deck) {
