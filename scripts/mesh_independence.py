@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What of the bent strand converges with the mesh, for four sets of friction: Markdown and chart.
+"""What of the bent strand converges with the mesh, for every way of limiting the localisation of slip: Markdown and chart.
 
     python3 scripts/mesh_independence.py [--binary target/release/subrope] [--out out/mesh_independence]
                                          [--docs docs/studies] [--resume]
@@ -13,20 +13,23 @@ import pathlib
 import re
 import subprocess
 
-# Parameters of the law.
+# Parameters of the law that set C has and the rope-yarns' bending stiffness.
 SET_C = {"H_t": 0.1, "H_l": 0.3}
 NONE = {"H_t": 0.0, "H_l": 0.0}
 VARIANTS = {
-    "none": ("H = X = mu = 0", NONE),
-    "set_c": ("set C: H_l = 0.3, H_t = 0.1 MPa", SET_C),
-    "kinematic": ("X_l = 2, X_t = 0.5 MPa", {**NONE, "X_t": 0.5, "X_l": 2.0}),
-    "pressure": ("mu_l = 0.1, mu_t = 0.2", {**NONE, "mu_t": 0.2, "mu_l": 0.1}),
+    "none": ("H = X = mu = 0", NONE, None),
+    "set_c": ("set C: H_l = 0.3, H_t = 0.1 MPa", SET_C, None),
+    "kinematic": ("X_l = 2, X_t = 0.5 MPa", {**NONE, "X_t": 0.5, "X_l": 2.0}, None),
+    "pressure": ("mu_l = 0.1, mu_t = 0.2", {**NONE, "mu_t": 0.2, "mu_l": 0.1}, None),
+    "yarns": ("10 rope-yarns of EI = 20 N mm^2", NONE, 20.0),
+    "stiff_yarns": ("10 rope-yarns of EI = 100 N mm^2", NONE, 100.0),
 }
-# (core, rings, layers).
-MESHES = [(2, 2, 20), (2, 2, 28), (2, 2, 40), (2, 2, 80)]
+# (core, rings, layers); the layers double every other mesh.
+MESHES = [(2, 2, 20), (2, 2, 28), (2, 2, 40), (2, 2, 56), (2, 2, 80)]
 COLUMNS = [
     ("moment", "moment [N mm]", "{:.2f}"),
     ("peak", "largest curvature over the mean", "{:.3f}"),
+    ("length", "length of that peak [mm]", "{:.2f}"),
     ("density_l", "peak density, longitudinal [mJ/mm^3]", "{:.4f}"),
     ("density_t", "peak density, transverse [mJ/mm^3]", "{:.5f}"),
     ("lost", "dissipated [mJ]", "{:.3f}"),
@@ -35,13 +38,16 @@ COLUMNS = [
 
 def member_scene(text, variant, mesh, angle):
     """The scene with other parameters, another mesh and angle, without fields."""
-    _, law = VARIANTS[variant]
+    _, law, stiffness = VARIANTS[variant]
     for key in ("H_t", "H_l"):
         text = re.sub(rf"^{key} = .*\n", "", text, flags=re.M)
     text = text.replace("friction = true\n", "friction = true\n" + "".join(f"{k} = {v}\n" for k, v in law.items()))
     text = text.replace('lines = "axis" ', 'lines = "yarns" ')
     for key, value in zip(("core", "rings", "layers"), mesh):
         text = re.sub(rf"^{key} = \d+", f"{key} = {value}", text, flags=re.M)
+    if stiffness:
+        bending = f"[strand.yarn_bending]\nyarns = 10\nstiffness = {stiffness}\n\n"
+        text = text.replace("[element]", bending + "[element]")
     text = re.sub(r"^angle = 90.0", f"angle = {angle}", text, flags=re.M)
     return re.sub(r"^fields = \[.*\]\nevery = 1", 'fields = ["displacement"]\nevery = 1000', text, flags=re.M)
 
@@ -76,6 +82,7 @@ def measures(summary):
         "done": summary["status"]["state"] == "done",
         "moment": sum(m * m for m in moment) ** 0.5,
         "peak": findings["largest_curvature_per_mm"] / findings["mean_curvature_per_mm"],
+        "length": findings.get("curvature_peak_length_mm", float("nan")),
         "density_l": peaks["longitudinal_mj_per_mm3"],
         "density_t": peaks["transverse_mj_per_mm3"],
         "lost": energies["dissipated_transverse_midpoint_mj"] + energies["dissipated_longitudinal_midpoint_mj"],
@@ -102,12 +109,12 @@ def table(results):
 
 
 def changes(results):
-    """Markdown of what every refinement changes."""
+    """Markdown of what the last doublings of the layers change."""
     along = [mesh for mesh in MESHES if mesh[:2] == MESHES[0][:2]]
-    lines = ["| variant | layers | " + " | ".join(head.split(" [")[0] for _, head, _ in COLUMNS) + " |"]
+    lines = ["| variant | doubling | " + " | ".join(head.split(" [")[0] for _, head, _ in COLUMNS) + " |"]
     lines.append("|" + "---|" * (len(COLUMNS) + 2))
-    for variant, (name, _) in VARIANTS.items():
-        for coarse, fine in zip(along, along[1:]):
+    for variant, (name, _, _) in VARIANTS.items():
+        for coarse, fine in zip(along, along[2:]):
             a, b = results.get((variant, coarse)), results.get((variant, fine))
             if a and b:
                 cells = ["{:+.1f} %".format(100.0 * (b[key] / a[key] - 1.0)) for key, _, _ in COLUMNS]
@@ -115,11 +122,11 @@ def changes(results):
     return "\n".join(lines) + "\n"
 
 
-COLOURS = ["#c0392b", "#2c6fbb", "#27864a", "#b7791f", "#6b3fa0"]
+COLOURS = ["#c0392b", "#2c6fbb", "#27864a", "#b7791f", "#6b3fa0", "#444444"]
 
 
 def chart(results, key, head):
-    """An SVG of one measure over the layers, mesh by mesh."""
+    """An SVG of one measure over the layers, each mesh finer by the square root of two."""
     along = [mesh for mesh in MESHES if mesh[:2] == MESHES[0][:2]]
     values = [results[v, m][key] for v in VARIANTS for m in along if (v, m) in results]
     low, high = 0.0, 1.1 * max(values)
@@ -136,7 +143,7 @@ def chart(results, key, head):
         value = low + (high - low) * i / 4
         out.append(f'<text x="62" y="{y(value) + 4:.1f}" text-anchor="end">{value:.3g}</text>')
         out.append(f'<path d="M70 {y(value):.1f}H{x(len(along) - 1) + 20}" stroke="#dddddd"/>')
-    for n, (variant, (name, _)) in enumerate(VARIANTS.items()):
+    for n, (variant, (name, _, _)) in enumerate(VARIANTS.items()):
         points = [(x(i), y(results[variant, m][key])) for i, m in enumerate(along) if (variant, m) in results]
         line = " ".join(f"{px:.1f},{py:.1f}" for px, py in points)
         out.append(f'<polyline points="{line}" fill="none" stroke="{COLOURS[n]}" stroke-width="2"/>')
@@ -167,7 +174,7 @@ def main():
     args.docs.mkdir(parents=True, exist_ok=True)
     (args.docs / "mesh_independence.md").write_text(text)
     for key, head, _ in COLUMNS:
-        if key in ("peak", "density_l"):
+        if key in ("peak", "length", "density_l"):
             (args.docs / f"mesh_independence_{key}.svg").write_text(chart(results, key, head))
     print(text)
 
