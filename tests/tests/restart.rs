@@ -165,6 +165,19 @@ fn a_bent_strand_goes_on_within_a_step_that_was_cut() {
     }
 }
 
+const PRESS: &str = "[[step]]\nname = \"press\"\nincrements = { fixed = 8 }\ntension = { elongation = -0.12 }\n\
+    [solver]\ntrust_region = \"always\"\n[output]\ncheckpoint_every = 1\n";
+
+/// A strand that buckles, every state of which is found as a minimum.
+#[test]
+fn minima_go_on() {
+    let one = check(&strand(PRESS), 1, 2).0;
+    let two = check(&strand(PRESS), 2, 3).0;
+    assert!(one == two, "the same on two threads");
+    let summary: serde_json::Value = serde_json::from_slice(&one["summary.json"]).unwrap();
+    assert_eq!(summary["counts"]["minimised"], 8);
+}
+
 const CYCLES: &str = r#"
 [[step]]
 name = "pull"
