@@ -74,7 +74,7 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
         }
         let mut hr = own;
         for j in 0..3 {
-            let to_fibre = self.to_fibre(j);
+            let to_fibre = self.fibre_row(j);
             for k in 0..3 {
                 hr[k][j] = sum3(own[k], to_fibre);
             }
@@ -96,7 +96,7 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
 
     /// Row of `B`.
     #[inline(always)]
-    fn to_fibre(&self, row: usize) -> [Wide<S>; 3] {
+    fn fibre_row(&self, row: usize) -> [Wide<S>; 3] {
         let [OnLine(a), OnLine(b), OnLine(c)] = &self.brick.group(self.first).to_fibre[row];
         let of = |numbers| Wide::of_group(self.simd, numbers, self.first);
         [of(a), of(b), of(c)]
@@ -130,7 +130,7 @@ impl<'a, S: Simd, const N: usize> Pack<'a, S, N> {
         for i in 0..6 {
             tensor[i] = v[i] * (scale * FACTOR[i]);
         }
-        let to_fibre = [self.to_fibre(0), self.to_fibre(1), self.to_fibre(2)];
+        let to_fibre = [self.fibre_row(0), self.fibre_row(1), self.fibre_row(2)];
         let mut t = [[[0.0; MAX_LANES]; 3]; 3];
         for k in 0..3 {
             let mut p = self.fr[k];
