@@ -24,8 +24,8 @@ VARIANTS = {
     "yarns": ("10 rope-yarns of EI = 20 N mm^2", NONE, 20.0),
     "stiff_yarns": ("10 rope-yarns of EI = 100 N mm^2", NONE, 100.0),
 }
-# (core, rings, layers); the layers double every other mesh.
-MESHES = [(2, 2, 20), (2, 2, 28), (2, 2, 40), (2, 2, 56), (2, 2, 80)]
+# (core, rings, layers); the layers double every other mesh, and the last has a finer section.
+MESHES = [(2, 2, 20), (2, 2, 28), (2, 2, 40), (2, 2, 56), (2, 2, 80), (2, 2, 112), (4, 2, 56)]
 COLUMNS = [
     ("moment", "moment [N mm]", "{:.2f}"),
     ("peak", "largest curvature over the mean", "{:.3f}"),
@@ -130,7 +130,7 @@ def chart(results, key, head):
     along = [mesh for mesh in MESHES if mesh[:2] == MESHES[0][:2]]
     values = [results[v, m][key] for v in VARIANTS for m in along if (v, m) in results]
     low, high = 0.0, 1.1 * max(values)
-    x = lambda i: 70 + 98 * i
+    x = lambda i: 70 + 84 * i
     y = lambda value: 330 - 290 * (value - low) / (high - low)
     out = ['<svg xmlns="http://www.w3.org/2000/svg" width="760" height="380" font-family="sans-serif" font-size="12">',
            '<rect width="760" height="380" fill="white"/>',
@@ -148,7 +148,7 @@ def chart(results, key, head):
         line = " ".join(f"{px:.1f},{py:.1f}" for px, py in points)
         out.append(f'<polyline points="{line}" fill="none" stroke="{COLOURS[n]}" stroke-width="2"/>')
         out += [f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5" fill="{COLOURS[n]}"/>' for px, py in points]
-        out.append(f'<text x="500" y="{60 + 20 * n}" fill="{COLOURS[n]}">{name}</text>')
+        out.append(f'<text x="540" y="{60 + 20 * n}" fill="{COLOURS[n]}">{name}</text>')
     return "\n".join(out + ["</svg>"]) + "\n"
 
 
