@@ -182,4 +182,5 @@ def main(arguments):
             fail(f"unknown arguments {' '.join(arguments)}\n{__doc__}")
 
 
-main(sys.argv[1:])
+if __name__ == "__main__":
+    main(sys.argv[1:])
