@@ -9,7 +9,7 @@ mod quadrature;
 pub use hex8::Hex8;
 pub use hex20::{Hex20, Hex20R, Serendipity};
 pub use hex27::Hex27;
-pub use map::{MappedPoint, jacobian, map_point, position};
+pub use map::{MappedPoint, jacobian, jacobian_of, map_point, position};
 pub use quadrature::QuadraturePoint;
 
 pub(crate) use hex27::{LATTICE, lagrange, lagrange_slope};

@@ -37,8 +37,10 @@ pub use fibre::{
     frame_from_directions,
 };
 pub use helix::{FrenetFrame, Handedness, Helix, Lay, Yarn, touching_pair, touching_radius, touching_radius_at_angle};
-pub use hexahedron::{Hex8, Hex20, Hex20R, Hex27, Hexahedron, MappedPoint, QuadraturePoint, Serendipity, map_point};
-pub use mesh::{CellKind, Face, Mesh, NodeLines, exterior_faces};
+pub use hexahedron::{
+    Hex8, Hex20, Hex20R, Hex27, Hexahedron, MappedPoint, QuadraturePoint, Serendipity, jacobian_of, map_point,
+};
+pub use mesh::{CellKind, Face, Mesh, NodeLines, extent, exterior_faces};
 pub use quadrilateral::{FacePoint, Quad4, Quad8, Quad9, Quadrilateral, surface_area};
 pub use rope::{
     Compaction, HelixRadius, LayBy, Rope, RopeFibres, RopeLay, RopeMesh, RopeShape, RopeSlice, RopeStrand, Sense,

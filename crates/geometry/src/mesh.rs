@@ -1,10 +1,12 @@
 //! Hexahedral meshes with named node sets, element sets and surfaces.
 
+mod extent;
 mod faces;
 mod lines;
 mod unused;
 mod validate;
 
+pub use extent::extent;
 pub use faces::exterior_faces;
 pub use lines::NodeLines;
 

@@ -4,11 +4,10 @@
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
 
 use subrope_material::lanes::{Lanes, MAX_LANES};
-use subrope_material::testkit::Numbers;
+use subrope_material::testkit::{Numbers, bundles};
 use subrope_material::{
-    BundleLaw, BundleParameters, Compaction, CompressibleNeoHooke, FibreNeoHooke, Friction, Hardening,
-    IsochoricNeoHooke, LaneFailure, LaneInput, LaneResponse, Law, ModeParameters, PointInput, Request, Response,
-    StVenantKirchhoff,
+    CompressibleNeoHooke, FibreNeoHooke, IsochoricNeoHooke, LaneFailure, LaneInput, LaneResponse, Law, PointInput,
+    Request, Response, StVenantKirchhoff,
 };
 
 const COUNT: usize = 3;
@@ -215,32 +214,9 @@ fn compare<L: Law>(law: &L, averaged: bool) {
     assert!((1..200).contains(&failures), "some are inverted, not all: {failures}");
 }
 
-fn bundle(compaction: Compaction, hardening: [Hardening; 2], mu: f64) -> BundleLaw {
-    let mode = |k, tau, hardening, x| ModeParameters::sliding(k, Friction { tau, hardening, x, mu });
-    BundleLaw::new(BundleParameters {
-        k_e: 2000.0,
-        k_ec: 100.0,
-        w_e: 0.005,
-        k_c: 60.0,
-        nu: 0.5,
-        compaction,
-        transverse: mode(15.0, 0.5, hardening[0], 2.0),
-        longitudinal: mode(20.0, 1.0, hardening[1], 0.0),
-    })
-    .unwrap()
-}
-
 #[test]
 fn bundles_in_lanes() {
-    let linear = [Hardening::Linear { h: 0.1 }, Hardening::Linear { h: 0.0 }];
-    let saturating = Hardening::Saturating { h_inf: 0.4, kappa_s: 0.02 };
-    let sliding = bundle(Compaction::Quadratic, linear, 0.0);
-    for law in [
-        BundleLaw::new(sliding.parameters().without_friction()).unwrap(),
-        sliding,
-        bundle(Compaction::Power { k_p: 300.0, m: 2.5 }, [saturating, linear[0]], 0.0),
-        bundle(Compaction::LockUp { z_lock: -0.2 }, [saturating; 2], 0.3),
-    ] {
+    for law in bundles().unwrap() {
         compare(&law, false);
         compare(&law, true);
     }

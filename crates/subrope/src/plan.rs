@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
-use subrope_fem::{Contribution, LineBending};
+use subrope_fem::Contribution;
 
 use crate::contact;
 use crate::model::RopeModel;
@@ -114,9 +114,8 @@ fn element(scene: &Scene, model: &RopeModel) -> PlanPart {
 }
 
 fn yarns(scene: &Scene, model: &RopeModel) -> PlanPart {
-    let bending = model.analysis.model().contributions.iter().find_map(|c| line_bending(c.as_ref()));
     let entry = scene.strand.as_ref().and_then(|strand| strand.yarn_bending.as_ref());
-    let (Some(bending), Some(entry)) = (bending, entry) else {
+    let (Some(bending), Some(entry)) = (model.yarn_bending(), entry) else {
         let why = match scene.strand {
             Some(_) => "no [strand.yarn_bending]",
             None => "only the mesh lines of a [strand] may follow its rope-yarns",
@@ -128,11 +127,6 @@ fn yarns(scene: &Scene, model: &RopeModel) -> PlanPart {
         "yarns",
         format!("{count} that bend with EI = {stiffness} N mm^2 each, {elements} elements of 4 nodes"),
     )
-}
-
-/// A contribution as bending stiffness of rope-yarns, if that is what it is.
-pub(crate) fn line_bending(contribution: &dyn Contribution) -> Option<&LineBending> {
-    contribution.as_any()?.downcast_ref()
 }
 
 fn solver(model: &RopeModel) -> PlanPart {

@@ -59,8 +59,13 @@ impl Division<'_> {
     pub fn is_shortest(&self, at: &Progress) -> bool {
         match self.step.increments {
             Increments::Fixed(_) => false,
-            Increments::Automatic { minimum, .. } => (self.next_end(at) - at.done) * self.options.cutback < minimum,
+            Increments::Automatic { minimum, .. } => self.shorter(at) < minimum,
         }
+    }
+
+    /// Length of the next increment once it has been cut.
+    fn shorter(&self, at: &Progress) -> f64 {
+        (self.next_end(at) - at.done) * self.options.cutback
     }
 
     /// After a failed attempt.
@@ -75,7 +80,7 @@ impl Division<'_> {
         match self.step.increments {
             Increments::Fixed(_) => Err(FemError::FixedIncrementFailed { step, increment: at.count + 1, cause }),
             Increments::Automatic { minimum, .. } => {
-                at.length = (self.next_end(at) - at.done) * self.options.cutback;
+                at.length = self.shorter(at);
                 if at.length < minimum {
                     return Err(FemError::IncrementTooShort { step, fraction: at.done, minimum, cause });
                 }

@@ -26,6 +26,14 @@ pub struct Model {
     pub contributions: Vec<Box<dyn Contribution>>,
 }
 
+impl Model {
+    /// Whether all forces derive from an incremental potential with a symmetric tangent, so that it can be minimised.
+    #[must_use]
+    pub fn can_be_minimised(&self) -> bool {
+        self.contributions.iter().all(|c| c.has_potential() && c.is_symmetric())
+    }
+}
+
 /// A model with its committed state; runs steps.
 pub struct Analysis {
     pub(super) model: Model,
@@ -99,7 +107,7 @@ impl Analysis {
         let (coordinates, nodes) = (model.kinematics.coordinate_count(), model.kinematics.node_count());
         Self {
             lever: model.kinematics.lever(),
-            extent: extent(model.kinematics.positions()),
+            extent: subrope_geometry::extent(model.kinematics.positions()),
             model,
             options,
             solver_options,
@@ -290,7 +298,7 @@ impl Analysis {
     }
 
     fn always_minimises(&self) -> bool {
-        self.options.trust_region == TrustRegion::Always && self.can_minimise()
+        self.options.trust_region == TrustRegion::Always && self.model.can_be_minimised()
     }
 
     /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer.
@@ -298,7 +306,7 @@ impl Analysis {
         self.options.trust_region == TrustRegion::Auto
             && matches!(step.increments, Increments::Automatic { .. })
             && matches!(cause, FemError::NotConverged { .. } | FemError::RunsAway { .. } | FemError::Linear(_))
-            && self.can_minimise()
+            && self.model.can_be_minimised()
     }
 
     fn begin(&mut self, step: &Step) -> Result<(), FemError> {
@@ -415,11 +423,4 @@ impl Analysis {
 /// Whether the elements of a contribution have changed.
 fn prepare(contributions: &mut [Box<dyn Contribution>], displacement: &[f64]) -> Result<bool, FemError> {
     contributions.iter_mut().try_fold(false, |changed, c| Ok(c.prepare(displacement)? || changed))
-}
-
-/// Diagonal of the box around some points.
-fn extent(points: &[Vector3<f64>]) -> f64 {
-    let Some(&first) = points.first() else { return 0.0 };
-    let (low, high) = points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
-    (high - low).norm()
 }

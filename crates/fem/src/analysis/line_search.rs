@@ -62,11 +62,7 @@ impl Analysis {
                 self.go(work, length, Request::Tangent)?;
                 self.settle(work, length, Request::Tangent)
             }
-            _ => Err(FemError::NotConverged {
-                iterations: TRIALS,
-                residual: work.base.norm / work.base.reference,
-                tolerance: self.options.force_tolerance,
-            }),
+            _ => Err(self.not_converged(work, TRIALS)),
         }
     }
 

@@ -101,9 +101,7 @@ impl Analysis {
             let tolerance = self.options.force_tolerance;
             let relative = relative_residual(&work.base);
             record.residuals.push(relative);
-            // Where the residual is nothing but rounding, so is the energy.
-            let settled = relative == 0.0 || energy <= self.options.energy_tolerance * largest_energy;
-            if relative <= tolerance && settled {
+            if self.is_converged(relative, energy, largest_energy) {
                 if !self.review()? {
                     return Ok(());
                 }
@@ -121,8 +119,7 @@ impl Analysis {
                 if relative <= ROUNDED.min(tolerance) && !self.review()? {
                     return Ok(());
                 }
-                let iterations = record.iterations;
-                return Err(FemError::NotConverged { iterations, residual: relative, tolerance });
+                return Err(self.not_converged(work, record.iterations));
             }
             self.correct_cheaply(work, &record.residuals[seen..], &mut record.negative_pivots)?;
             record.iterations += 1;
@@ -132,6 +129,19 @@ impl Analysis {
             // Energy of this correction in the new residual.
             energy = self.slope(work).abs();
         }
+    }
+
+    /// Whether a residual and the energy of the last correction are within the tolerances. Where the residual is nothing but
+    /// rounding, so is the energy.
+    pub(super) fn is_converged(&self, relative: f64, energy: f64, largest_energy: f64) -> bool {
+        let settled = relative == 0.0 || energy <= self.options.energy_tolerance * largest_energy;
+        relative <= self.options.force_tolerance && settled
+    }
+
+    /// The base is no answer after some iterations.
+    pub(super) fn not_converged(&self, work: &Workspace, iterations: usize) -> FemError {
+        let (residual, tolerance) = (relative_residual(&work.base), self.options.force_tolerance);
+        FemError::NotConverged { iterations, residual, tolerance }
     }
 
     /// Whether a contribution has moved its multipliers, so that the iteration must go on.

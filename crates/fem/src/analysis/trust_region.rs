@@ -132,11 +132,6 @@ impl Bracket {
 }
 
 impl Analysis {
-    /// Whether the potential of all forces exists and has a symmetric tangent.
-    pub(super) fn can_minimise(&self) -> bool {
-        self.has_potential() && self.system.as_ref().is_some_and(System::is_symmetric)
-    }
-
     /// Finds a minimum of the incremental potential at the end of an attempt.
     pub(super) fn minimise(
         &mut self,
@@ -148,14 +143,12 @@ impl Analysis {
         work.factors.forget();
         self.first_iterate(work, attempt, record)?;
         let mut region = self.region(work)?;
-        let (tolerance, last) =
-            (self.options.force_tolerance, record.iterations + MOST_STEPS * self.options.max_iterations);
+        let last = record.iterations + MOST_STEPS * self.options.max_iterations;
         let (mut energy, mut largest_energy) = (0.0, 0.0_f64);
         loop {
             let relative = relative_residual(&work.base);
             record.residuals.push(relative);
-            let settled = relative == 0.0 || energy <= self.options.energy_tolerance * largest_energy;
-            if relative <= tolerance && settled && self.is_minimum(record)? {
+            if self.is_converged(relative, energy, largest_energy) && self.is_minimum(record)? {
                 if !self.review()? {
                     return Ok(());
                 }
@@ -163,16 +156,11 @@ impl Analysis {
                 self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
             }
             if record.iterations >= last {
-                return Err(self.no_way_down(work, record));
+                return Err(self.not_converged(work, record.iterations));
             }
             largest_energy = largest_energy.max(self.descend(work, &mut region, record, last)?);
             energy = self.slope(work).abs();
         }
-    }
-
-    fn no_way_down(&self, work: &Workspace, record: &IncrementRecord) -> FemError {
-        let (iterations, residual) = (record.iterations, relative_residual(&work.base));
-        FemError::NotConverged { iterations, residual, tolerance: self.options.force_tolerance }
     }
 
     /// A region as wide as the increment has moved, or as one step of Jacobi's method.
@@ -239,7 +227,7 @@ impl Analysis {
                 Err(_) => region.adapt(0.0, length),
             }
         }
-        Err(self.no_way_down(work, record))
+        Err(self.not_converged(work, record.iterations))
     }
 
     /// Fall of the potential from the base to the trial. Where its difference would be rounding, the trapezoidal rule along
@@ -283,12 +271,7 @@ impl Analysis {
             }
             shift = bracket.admit(self.secular(work, region, shift)?);
         }
-        Err(self.no_step(work))
-    }
-
-    fn no_step(&self, work: &Workspace) -> FemError {
-        let (residual, tolerance) = (relative_residual(&work.base), self.options.force_tolerance);
-        FemError::NotConverged { iterations: MOST_SHIFTS, residual, tolerance }
+        Err(self.not_converged(work, MOST_SHIFTS))
     }
 
     /// Factorises `K + shift D`; says whether it is positive definite.

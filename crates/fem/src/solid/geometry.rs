@@ -6,7 +6,7 @@
 #![allow(clippy::needless_range_loop, reason = "tensors are written by their indices, as in the formulas")]
 
 use nalgebra::{Matrix3, Vector3};
-use subrope_geometry::{GeometryError, Hexahedron};
+use subrope_geometry::{GeometryError, Hexahedron, jacobian_of};
 use subrope_material::lanes::MAX_LANES;
 
 use super::kernel::NodeVector;
@@ -98,13 +98,14 @@ impl<const N: usize> ReferenceGradients<N> {
         label: u64,
         groups: &mut Vec<PointGroup>,
     ) -> Result<(), GeometryError> {
-        for (number, gradients) in self.by_point.chunks(MAX_LANES).enumerate() {
+        for (number, points) in self.by_point.chunks(MAX_LANES).enumerate() {
             let mut group = PointGroup::ZERO;
             let first = number * MAX_LANES;
-            for lane in 0..MAX_LANES {
-                let q = lane.min(gradients.len() - 1);
+            for (q, gradients) in points.iter().enumerate() {
                 let weight = H::quadrature()[first + q].weight;
-                group.set(lane, &Point::new(&gradients[q].0, x, (frames[first + q], weight), label)?);
+                let point = Point::new(&gradients.0, x, (frames[first + q], weight), label)?;
+                let end = if q + 1 < points.len() { q + 1 } else { MAX_LANES };
+                (q..end).for_each(|lane| group.set(lane, &point));
             }
             groups.push(group);
         }
@@ -119,14 +120,7 @@ impl Point {
         (frame, weight): (Matrix3<f64>, f64),
         label: u64,
     ) -> Result<Self, GeometryError> {
-        let mut jacobian = Matrix3::zeros();
-        for (i, line) in map.iter().enumerate() {
-            for (a, value) in line.iter().enumerate() {
-                for k in 0..3 {
-                    jacobian[(k, i)] += x[a][k] * value;
-                }
-            }
-        }
+        let jacobian = jacobian_of(x, map);
         let determinant = jacobian.determinant();
         let inverse = jacobian
             .try_inverse()

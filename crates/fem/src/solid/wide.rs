@@ -44,12 +44,6 @@ impl<S: Simd> Wide<S> {
         S::as_mut_simd_f64s(group).0[part] = self.lanes;
     }
 
-    /// The bare vector.
-    #[inline(always)]
-    pub fn lanes(self) -> S::f64s {
-        self.lanes
-    }
-
     /// The first lane that holds no positive number, with what it holds.
     #[inline(always)]
     pub fn first_not_positive(self) -> Option<(usize, f64)> {

@@ -31,11 +31,13 @@ pub fn position<H: Hexahedron<N>, const N: usize>(nodes: &[Vector3<f64>; N], xi:
 /// Jacobian matrix J_ij = dX_i/dxi_j = sum_a X_a,i dN_a/dxi_j \[mm\] for nodal coordinates `nodes` \[mm\].
 #[inline]
 pub fn jacobian<H: Hexahedron<N>, const N: usize>(nodes: &[Vector3<f64>; N], xi: [f64; 3]) -> Matrix3<f64> {
-    from_gradient(nodes, &H::gradient(xi))
+    jacobian_of(nodes, &H::gradient(xi))
 }
 
+/// Jacobian matrix J_ij = sum_a X_a,i dN_a/dxi_j \[mm\] of gradients dN_a/dxi_j that are known.
 #[inline]
-fn from_gradient<const N: usize>(nodes: &[Vector3<f64>; N], gradient: &[[f64; N]; 3]) -> Matrix3<f64> {
+#[must_use]
+pub fn jacobian_of<const N: usize>(nodes: &[Vector3<f64>; N], gradient: &[[f64; N]; 3]) -> Matrix3<f64> {
     let mut columns = [Vector3::zeros(); 3];
     for (column, slope) in columns.iter_mut().zip(gradient) {
         for a in 0..N {
@@ -55,7 +57,7 @@ pub fn map_point<H: Hexahedron<N>, const N: usize>(
     xi: [f64; 3],
 ) -> Result<MappedPoint<N>, GeometryError> {
     let natural = H::gradient(xi);
-    let jacobian = from_gradient(nodes, &natural);
+    let jacobian = jacobian_of(nodes, &natural);
     let determinant = jacobian.determinant();
     if !(determinant > 0.0 && determinant.recip().is_finite()) {
         return Err(GeometryError::SingularMap { determinant, xi });

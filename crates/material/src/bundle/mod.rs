@@ -69,7 +69,7 @@ impl BundleLaw {
     /// Strain modes, axial response and return map of both modes.
     #[inline(always)]
     fn update<V: Lanes>(&self, input: &LaneInput<V>, old: &[f64]) -> Update<V> {
-        let old = BundleState::read(input.gradient[0][0], old, input.points, self.slides, self.presses);
+        let old = BundleState::read(input.gradient[0][0], old, self.slides, self.presses);
         let kinematics = Kinematics::new(&input.gradient);
         let modes = &kinematics.modes;
         let axial =

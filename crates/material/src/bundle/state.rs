@@ -47,15 +47,15 @@ pub(super) struct BundleState<V> {
 }
 
 impl<V: Lanes> BundleState<V> {
-    /// From the states of `count` points one after the other, whose length has been checked; lanes without a point
-    /// repeat the last.
+    /// From the states of the points one after the other, whose length has been checked; lanes without a point repeat
+    /// the last.
     #[inline(always)]
-    pub(super) fn read(witness: V, old: &[f64], count: usize, slides: bool, presses: bool) -> Self {
+    pub(super) fn read(witness: V, old: &[f64], slides: bool, presses: bool) -> Self {
         let mut numbers = [witness.splat(0.0); 9];
         match (slides, presses) {
             (false, _) => {}
-            (true, false) => read_numbers::<V, 8>(witness, old, count, &mut numbers),
-            (true, true) => read_numbers::<V, 9>(witness, old, count, &mut numbers),
+            (true, false) => read_numbers::<V, 8>(witness, old, &mut numbers),
+            (true, true) => read_numbers::<V, 9>(witness, old, &mut numbers),
         }
         let [d1, d2, g2, g3, kappa_t, kappa_l, d_t, d_l, pressure] = numbers;
         Self {
@@ -88,9 +88,9 @@ fn numbers<V: Lanes>(t: &ModeState<V>, l: &ModeState<V>, pressure: V) -> [V; 9] 
     ]
 }
 
-/// The first `N` numbers of `count` points; a full pack by loops of constant length.
+/// The first `N` numbers of every point; a full pack by loops of constant length.
 #[inline(always)]
-fn read_numbers<V: Lanes, const N: usize>(witness: V, old: &[f64], count: usize, numbers: &mut [V; 9]) {
+fn read_numbers<V: Lanes, const N: usize>(witness: V, old: &[f64], numbers: &mut [V; 9]) {
     let (states, _) = old.as_chunks::<N>();
     if states.len() == V::COUNT {
         for (at, number) in numbers[..N].iter_mut().enumerate() {
@@ -98,7 +98,7 @@ fn read_numbers<V: Lanes, const N: usize>(witness: V, old: &[f64], count: usize,
         }
     } else {
         for (at, number) in numbers[..N].iter_mut().enumerate() {
-            *number = witness.fill(|lane| states[lane.min(count - 1)][at]);
+            *number = witness.fill(|lane| states[lane.min(states.len() - 1)][at]);
         }
     }
 }

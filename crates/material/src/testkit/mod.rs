@@ -3,6 +3,7 @@
 //! [`check`] runs everything on a set of [`Path`]s; the checks are also public one by one. A failure names the worst
 //! entry with the found and the expected number. Nothing is printed.
 
+mod bundles;
 mod derivatives;
 mod edge;
 mod failure;
@@ -15,6 +16,7 @@ mod walk;
 
 use crate::law::Law;
 
+pub use bundles::bundles;
 pub use derivatives::{mean_elongation_derivatives, mean_elongation_split, stress_is_gradient, tangent_is_derivative};
 pub use edge::yield_edge;
 pub use failure::{Entry, TestkitFailure};

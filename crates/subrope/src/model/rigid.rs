@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use subrope_fem::kinematics::{Section, SectionKind};
-use subrope_geometry::Axis;
+use subrope_geometry::{Axis, extent};
 
 use super::{MeshModel, ModelError};
 use crate::scene::{RigidShape, Scene};
@@ -45,9 +45,5 @@ pub(super) fn rigid_bodies(
 
 /// Radius of a generated strand, else a length that belongs to the mesh.
 pub(crate) fn size(scene: &Scene, mesh: &MeshModel) -> f64 {
-    scene.strand_radius().unwrap_or_else(|| {
-        let low = mesh.mesh.points.iter().fold(Vector3::repeat(f64::INFINITY), |a, p| a.inf(p));
-        let high = mesh.mesh.points.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
-        0.1 * (high - low).norm()
-    })
+    scene.strand_radius().unwrap_or_else(|| 0.1 * extent(&mesh.mesh.points))
 }

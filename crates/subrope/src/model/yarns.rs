@@ -3,7 +3,7 @@
 use subrope_fem::{BendingLine, LineBending};
 use subrope_geometry::{Mesh, NodeLines};
 
-use super::{MeshModel, ModelError};
+use super::{MeshModel, ModelError, RopeModel};
 use crate::scene::{EndKind, Scene};
 
 /// The lines of the strand with their share of the stiffness of its rope-yarns; none where the scene gives them none.
@@ -21,6 +21,15 @@ pub(super) fn bending(scene: &Scene, model: &MeshModel) -> Result<Option<LineBen
     };
     let lines = lines.into_iter().map(line).collect::<Option<Vec<_>>>().ok_or(ModelError::NoYarnLines)?;
     Ok(Some(LineBending::new(&mesh.points, &lines)?))
+}
+
+impl RopeModel {
+    /// The bending stiffness of its rope-yarns, where it has one.
+    #[must_use]
+    pub fn yarn_bending(&self) -> Option<&LineBending> {
+        let contributions = &self.analysis.model().contributions;
+        contributions.iter().find_map(|contribution| contribution.as_any()?.downcast_ref())
+    }
 }
 
 /// Whether a rigid end carries a section and with it the direction of the rope-yarns there.

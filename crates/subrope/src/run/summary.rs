@@ -14,7 +14,7 @@ use super::line_load::{self, AnalyticLineLoad, ContactLine, LineLoadSummary, con
 use super::strands::{self, StrandSummary};
 use crate::contact::{self, PairSummary};
 use crate::model::RopeModel;
-use crate::plan::{Plan, line_bending};
+use crate::plan::Plan;
 use crate::scene::SceneFile;
 use crate::sizing::{RopeSizing, SizingSummary};
 
@@ -374,11 +374,10 @@ fn points(model: &RopeModel) -> BTreeMap<String, PointSummary> {
 
 fn energies(model: &RopeModel) -> EnergySummary {
     let t = model.analysis.totals();
-    let bending = model.analysis.model().contributions.iter().find_map(|c| line_bending(c.as_ref()));
     EnergySummary {
         external_work_mj: t.external_work,
         stored_mj: t.stored,
-        stored_in_yarn_bending_mj: bending.map(LineBending::stored),
+        stored_in_yarn_bending_mj: model.yarn_bending().map(LineBending::stored),
         dissipated_transverse_mj: t.dissipated[0],
         dissipated_longitudinal_mj: t.dissipated[1],
         dissipated_transverse_midpoint_mj: t.dissipated_mid[0],

@@ -4,7 +4,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use nalgebra::Vector3;
 use subrope_fem::FemError;
 use subrope_fem::analysis::{Analysis, Control, IncrementRecord, Observer};
 
@@ -128,7 +127,7 @@ fn measure(model: &mut RopeModel, (steps, fraction): (usize, f64), done: bool) -
     let condition = model.analysis.condition();
     let analysis = &model.analysis;
     let totals = *analysis.totals();
-    let size = size(&model.mesh.mesh.points);
+    let size = subrope_geometry::extent(&model.mesh.mesh.points);
     let points = analysis.model().kinematics.points().len();
     let resultants = (0..points).map(|index| analysis.point_reaction(index));
     let forces = resultants.flat_map(|(force, moment)| {
@@ -154,13 +153,6 @@ fn measure(model: &mut RopeModel, (steps, fraction): (usize, f64), done: bool) -
         forces: forces.collect(),
         energies: vec![totals.external_work, stored, transverse, longitudinal, contact, totals.contact_friction],
     }
-}
-
-/// Diagonal of the box around points \[mm\].
-fn size(points: &[Vector3<f64>]) -> f64 {
-    let Some(first) = points.first() else { return 1.0 };
-    let (low, high) = points.iter().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
-    (high - low).norm()
 }
 
 /// Looks at every converged increment.
