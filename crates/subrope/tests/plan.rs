@@ -3,14 +3,19 @@
 
 use std::path::Path;
 
-use subrope::model::RopeModel;
+use subrope::model::{ModelError, RopeModel};
 use subrope::plan::{Plan, PlanPart};
-use subrope::scene::SceneFile;
+use subrope::scene::{SceneFile, TrustRegion};
 
-fn plan(scene: &str, change: impl Fn(&mut SceneFile)) -> (Plan, RopeModel) {
+fn changed(scene: &str, change: impl Fn(&mut SceneFile)) -> SceneFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene);
     let mut file = SceneFile::load(&path).unwrap();
     change(&mut file);
+    file
+}
+
+fn plan(scene: &str, change: impl Fn(&mut SceneFile)) -> (Plan, RopeModel) {
+    let file = changed(scene, change);
     let mut model = RopeModel::new(&file, Some(1)).unwrap();
     model.check_steps().unwrap();
     (Plan::new(&file.scene, &model), model)
@@ -47,6 +52,17 @@ fn rope_yarns_bend_where_the_scene_says_so() {
     assert!(part(&with, "yarns").uses.contains("10 that bend with EI = 20 N mm^2"), "{with}");
     assert_eq!(model.analysis.model().contributions.len(), count + 1);
     assert!(model.analysis.system().unwrap().is_symmetric());
+}
+
+/// A scene that asks for minima has them or is refused, whatever takes the potential away.
+#[test]
+fn minima_without_a_potential_are_refused() {
+    let always = |file: &mut SceneFile| file.scene.solver.trust_region = TrustRegion::Always;
+    for scene in ["sub_rope_cycles.toml", "sub_rope_slice_cycles.toml"] {
+        let refused = RopeModel::new(&changed(scene, always), Some(1));
+        assert!(matches!(refused, Err(ModelError::NoPotential)), "{scene}");
+    }
+    assert!(RopeModel::new(&changed("bent_strand_coarse.toml", always), Some(1)).is_ok());
 }
 
 #[test]

@@ -123,7 +123,7 @@ pub enum TrustRegion {
     Auto,
     /// Never.
     Off,
-    /// In every increment: only stable states are found.
+    /// In every increment: only stable states are found. Without a potential as never.
     Always,
 }
 

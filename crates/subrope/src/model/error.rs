@@ -90,6 +90,13 @@ pub enum ModelError {
          out [strand.yarn_bending]"
     )]
     NoYarnLines,
+    /// A minimisation was asked for, and forces have no potential.
+    #[error(
+        "solver.trust_region = \"always\" minimises the incremental potential of all forces, which they have not: friction grows \
+         with pressure (mu_t, mu_l), or that of contacts is exact; leave mu_t and mu_l out and set contact.tangent = \
+         \"symmetric\", or write trust_region = \"auto\""
+    )]
+    NoPotential,
     /// The normal of a section free in radius is not defined.
     #[error("the nodes of section \"{name}\" do not span a plane, so that they have no radius")]
     NoSectionNormal {

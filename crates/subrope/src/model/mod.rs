@@ -97,6 +97,9 @@ impl RopeModel {
             Some(shape) => slice_model(scene, &mesh, &shape)?,
             None => whole_model(scene, &mesh)?,
         };
+        if scene.solver.trust_region == scene::TrustRegion::Always && !model.can_be_minimised() {
+            return Err(ModelError::NoPotential);
+        }
         let kinematics = &model.kinematics;
         let program = Program::new(scene);
         let steps = steps::steps(scene, &program, &mesh, kinematics)?;

@@ -23,7 +23,8 @@ pub struct Solver {
     /// Minimisation of the incremental potential within a trust region, which ends in a stable state; possible without
     /// friction that grows with pressure (`mu_t`, `mu_l`) and with `contact.friction = 0` or `contact.tangent =
     /// "symmetric"`. "auto": where Newton's method fails again and again, or at the shortest of automatic increments.
-    /// "off": never. "always": in every increment.
+    /// "off": never. "always": in every increment, refused
+    /// where it is not possible.
     pub trust_region: TrustRegion,
     /// Start each increment from the extrapolated last one.
     pub extrapolate: bool,
