@@ -309,9 +309,9 @@ fn mean_elongation_does_not_lock() {
     let table = [(2, 0.1822), (4, 0.1844), (8, 0.1849), (16, 0.1846), (32, 0.1842)];
     to_the_digits(Brick::MeanElongation, 100.0, &table, 4);
     to_the_digits(Brick::MeanElongation, 1e4, &[(4, 0.1863), (8, 0.1880)], 4);
-    // No published values on the other meshes.
-    for n in [2, 16, 32] {
-        close(&format!("k = 1e4, n = {n}"), edge_force(Brick::MeanElongation, n, 1e4), 0.188, 0.03);
+    // No reference on the other meshes: near that of the finest which has one.
+    for (n, tolerance) in [(2, 0.03), (16, 0.01), (32, 0.01)] {
+        close(&format!("k = 1e4, n = {n}"), edge_force(Brick::MeanElongation, n, 1e4), 0.1880, tolerance);
     }
     close("n = 4", edge_force(Brick::MeanElongation, 4, 100.0), 0.184, 0.01);
 }
