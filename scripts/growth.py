@@ -51,24 +51,30 @@ NOT_CONVERGED = 3
 PHASES = ("assembly", "factorisation", "solution")
 
 
-def scene(changes):
-    """The scene with one short pull and other values of some keys."""
-    text = SCENE.read_text().split("[[step]]")[0]
+def changed(text, changes, section=None):
+    """A scene with other values of some keys; those that it lacks are put into a section."""
     for key, value in changes.items():
         text, count = re.subn(rf"^{key} = [^#\n]*", f"{key} = {value} ", text, flags=re.M)
         if count == 0:
-            text = text.replace("[rope]\n", f"[rope]\n{key} = {value}\n")
-    return text + PULL
+            if section is None:
+                raise KeyError(key)
+            text = text.replace(f"{section}\n", f"{section}\n{key} = {value}\n")
+    return text
 
 
-def run(args, family, name, text, threads=1):
-    """One run of a member; its summary, or why it failed."""
+def scene(changes):
+    """The scene with one short pull and other values of some keys."""
+    return changed(SCENE.read_text().split("[[step]]")[0], changes, "[rope]") + PULL
+
+
+def run(args, family, name, text, threads=1, to_the_end=True):
+    """One run of a member; its summary, or why it failed. A run that ends early has failed, unless only its costs count."""
     folder = args.out / family / name.replace(" ", "_")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.toml").write_text(text)
     command = [args.binary, "run", folder / "scene.toml", "--out", folder / "results", "--threads", threads]
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
-    if done.returncode not in (0, NOT_CONVERGED):
+    if done.returncode != 0 and (to_the_end or done.returncode != NOT_CONVERGED):
         return None, done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"exit code {done.returncode}"
     return json.loads((folder / "results" / "summary.json").read_text()), None
 
@@ -82,6 +88,12 @@ def costs(summary):
     return out
 
 
+def keep_least(best, key, summary):
+    """Keeps the least of every cost of a member."""
+    new = costs(summary)
+    best[key] = {k: min(v, best.get(key, new)[k]) for k, v in new.items()}
+
+
 def family_table(args, family):
     members = FAMILIES[family]
     best, sizes, failed = {}, {}, {}
@@ -89,13 +101,12 @@ def family_table(args, family):
         for name, changes in members:
             if name in failed:
                 continue
-            summary, why = run(args, family, name, scene(changes))
+            summary, why = run(args, family, name, scene(changes), to_the_end=False)
             if summary is None:
                 failed[name] = why
                 continue
             sizes[name] = summary["size"]
-            new = costs(summary)
-            best[name] = {k: min(v, best.get(name, new)[k]) for k, v in new.items()}
+            keep_least(best, name, summary)
     print(f"\n| {family} | unknowns | GFLOP | factorisation GFLOP/s | assembly ms | factorisation ms | solution ms "
           "| iteration ms | exponent | memory MB | exponent |")
     print("|" + "---|" * 11)
@@ -126,8 +137,7 @@ def family_table(args, family):
 def cycles_table(args):
     print("\n| cycles | increments | seconds | ms per cycle | memory MB |\n|---|---|---|---|---|")
     for count in CYCLES:
-        text = re.sub(r"^count = \d+", f"count = {count}", SLICE.read_text(), flags=re.M)
-        text = re.sub(r"^every = \d+", f"every = {max(1, count // 10)}", text, flags=re.M)
+        text = changed(SLICE.read_text(), {"count": count, "every": max(1, count // 10)})
         summary, why = run(args, "cycles", str(count), text)
         if summary is None:
             print(f"| {count} | {why} | | | |")
@@ -145,12 +155,11 @@ def threads_table(args):
         best = {}
         for _ in range(args.repeats):
             for threads in (1, 2):
-                summary, why = run(args, f"threads_{threads}", name, scene(changes), threads)
+                summary, why = run(args, f"threads_{threads}", name, scene(changes), threads, to_the_end=False)
                 if summary is None:
                     print(f"| {name} | {threads} | {why} |" + " |" * 5)
                     return
-                new = costs(summary)
-                best[threads] = {k: min(v, best.get(threads, new)[k]) for k, v in new.items()}
+                keep_least(best, threads, summary)
         tables = [args.out / f"threads_{t}" / name.replace(" ", "_") / "results" / "history.csv" for t in best]
         same = "yes" if len({table.read_bytes() for table in tables}) == 1 else "NO"
         for threads, cost in best.items():
@@ -161,10 +170,8 @@ def threads_table(args):
 
 def strand(turns):
     """The strand of scenes/strand_tension.toml over more turns, pulled by a thousandth in one increment."""
-    text = STRAND.read_text()
-    for key, value in (("length", turns * 30.3), ("layers", turns * 24), ("increments", "{ fixed = 1 }"), ("elongation", 0.001)):
-        text = re.sub(rf"^{key} = [^#\n]*", f"{key} = {value} ", text, flags=re.M)
-    return re.sub(r"^fields = [^#\n]*", "fields = []", text, flags=re.M)
+    keys = {"length": turns * 30.3, "layers": turns * 24, "increments": "{ fixed = 1 }", "elongation": 0.001}
+    return changed(STRAND.read_text(), keys)
 
 
 def largest(args):

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The tests of orders and structures (or those that the arguments name) under valgrind: what they call holds the only unsafe code of the libraries, the two calls of METIS.
+# The tests of orders and structures (or those that the arguments name) under valgrind: what they call holds the only unsafe
+# code of the libraries, the two calls of METIS.
 # Reads and writes of METIS beyond the arrays it is given, uninitialised numbers and leaks end in an error.
 set -eu
 cd "$(dirname "$0")/.."
