@@ -25,10 +25,11 @@ name = "pull"
 increments = { fixed = 1 }
 [step.tension]
 elongation = 1e-5
-# Every iteration factorises, so that its cost is the same in all sizes. Long ropes of strands that just touch start badly: a few
+# Every iteration factorises and evaluates once, so that its cost is the same in all sizes. Long ropes of strands that just touch start badly: a few
 # iterations are enough to know their cost, converged or not.
 [solver]
 keep_factors = false
+line_search = "off"
 max_iterations = 8
 """
 PITCH, LAYERS = 60.0, 40

@@ -10,6 +10,7 @@ mod dense;
 mod meshes;
 mod problem;
 mod rope;
+pub mod truss;
 mod wires;
 
 pub use bodies::{Bodies, Body, rigid};

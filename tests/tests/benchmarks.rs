@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 use nalgebra::{Matrix3, Vector3};
 use subrope_fem::FemError;
-use subrope_fem::analysis::{Increments, NewtonOptions};
+use subrope_fem::analysis::{Increments, NewtonOptions, PathControl};
 use subrope_fem::kinematics::{Section, SectionKind};
 use subrope_geometry::{CellKind, Mesh, frame_from_directions};
 use subrope_material::{FibreNeoHooke, IsochoricNeoHooke, StVenantKirchhoff};
@@ -15,7 +15,7 @@ use subrope_tests::{
 };
 
 fn automatic(initial: f64) -> Increments {
-    Increments::Automatic { initial, minimum: 1e-6, maximum: 1.0, max_count: 1000 }
+    Increments::Automatic { control: PathControl::Load, initial, minimum: 1e-6, maximum: 1.0, max_count: 1000 }
 }
 
 fn isotropic(young: f64) -> StVenantKirchhoff {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use subrope_contact::{Contact, ContactOptions, History, Smoothing, Surface};
-use subrope_fem::analysis::{Analysis, Control, IncrementRecord, Increments, NewtonOptions, Observer};
+use subrope_fem::analysis::{Analysis, Control, IncrementRecord, Increments, NewtonOptions, Observer, PathControl};
 use subrope_fem::kinematics::{NodeRule, Section};
 use subrope_fem::{Contribution, FemError};
 use subrope_geometry::{CellKind, Face, Strand, strand::sets};
@@ -49,7 +49,7 @@ fn free_nodes(problem: &Problem) -> Vec<u32> {
 }
 
 fn automatic(initial: f64) -> Increments {
-    Increments::Automatic { initial, minimum: 1e-3, maximum: 1.0, max_count: 100 }
+    Increments::Automatic { control: PathControl::Load, initial, minimum: 1e-3, maximum: 1.0, max_count: 100 }
 }
 
 // -------------------------------------------------------------------------------------------------------------- patch

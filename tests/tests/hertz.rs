@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Vector3};
 use subrope_contact::{Contact, ContactOptions, Smoothing, Surface};
 use subrope_fem::Contribution;
-use subrope_fem::analysis::{Increments, NewtonOptions};
+use subrope_fem::analysis::{Increments, NewtonOptions, PathControl};
 use subrope_geometry::{CellKind, Mesh};
 use subrope_material::StVenantKirchhoff;
 use subrope_tests::{Bodies, Body, Brick, Problem, brick, close, constant_frames, rigid};
@@ -78,7 +78,13 @@ fn steel_on_aluminium(cells: usize, force: f64, penalty: f64) -> [f64; 3] {
     let held: Vec<u32> = sections.iter().flat_map(|s| s.nodes.clone()).collect();
     let free: Vec<u32> = (0..bodies.mesh.points.len() as u32).filter(|n| !held.contains(n)).collect();
     let mut problem = problem(&bodies, solids, pair, sections.to_vec());
-    let automatic = |initial| Increments::Automatic { initial, minimum: 1e-4, maximum: 1.0, max_count: 100 };
+    let automatic = |initial| Increments::Automatic {
+        control: PathControl::Load,
+        initial,
+        minimum: 1e-4,
+        maximum: 1.0,
+        max_count: 100,
+    };
     let touch = problem.step(automatic(0.5)).hold(0, &[]).hold(1, &[]).point(1, 1, -0.05).nodes(&free, 2, 0.0).build();
     problem.run(&touch).unwrap();
     let load = problem.step(automatic(0.2)).hold(0, &[]).hold(1, &[1]).nodes(&free, 2, 0.0);

@@ -165,6 +165,16 @@ fn a_bent_strand_goes_on_within_a_step_that_was_cut() {
     }
 }
 
+const FOLLOW: &str = "[[step]]\nname = \"press\"\n\
+    increments = { initial = 0.05, maximum = 0.1, control = \"arc_length\" }\ntension = { elongation = -0.08 }\n\
+    [output]\ncheckpoint_every = 3\n";
+
+/// A path with arc lengths, on which the fraction of the step is an unknown.
+#[test]
+fn a_path_goes_on() {
+    assert!(check(&strand(FOLLOW), 1, 2).0 == check(&strand(FOLLOW), 2, 3).0, "the same on two threads");
+}
+
 const PRESS: &str = "[[step]]\nname = \"press\"\nincrements = { fixed = 8 }\ntension = { elongation = -0.12 }\n\
     [solver]\ntrust_region = \"always\"\n[output]\ncheckpoint_every = 1\n";
 

@@ -9,7 +9,7 @@ use nalgebra::{DVector, Rotation3, Vector3};
 use subrope::model::RopeModel;
 use subrope::scene::Scene;
 use subrope_contact::{Contact, contacts};
-use subrope_fem::analysis::{Analysis, Increments, Model, NewtonOptions, Silent};
+use subrope_fem::analysis::{Analysis, Increments, Model, NewtonOptions, PathControl, Silent};
 use subrope_fem::kinematics::{Image, Kinematics, NodeRule, Screw};
 use subrope_fem::linear::{Method, SolverOptions};
 use subrope_fem::{FemError, Repeated, Request};
@@ -154,7 +154,8 @@ fn stretch(problem: &mut Problem, mesh: &Mesh, extension: f64, twist: f64) -> [f
     let axis = mesh.node_sets["AXIS"][0];
     let x = |n: u32| mesh.points[n as usize].x;
     let outer = mesh.node_sets["END_A"].iter().copied().max_by(|&a, &b| x(a).total_cmp(&x(b))).unwrap();
-    let increments = Increments::Automatic { initial: 0.5, minimum: 1e-3, maximum: 0.5, max_count: 100 };
+    let increments =
+        Increments::Automatic { control: PathControl::Load, initial: 0.5, minimum: 1e-3, maximum: 0.5, max_count: 100 };
     let mut step = problem.step(increments).hold(0, &[]).point(0, 2, extension).point(0, 5, twist);
     step = step.place(axis, &Vector3::zeros()).nodes(&[outer], 1, 0.0);
     let step = step.build();

@@ -1,158 +1,18 @@
-//! Ways past limit points and bifurcations, on bars and columns whose answers are known in closed form.
+//! Minima of the incremental potential where Newton's method finds no way, on bars and columns whose answers are known in
+//! closed form, and on bent strands.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use nalgebra::{Matrix3, Vector3};
-use subrope_fem::analysis::{
-    Analysis, Control, IncrementRecord, Increments, Load, Model, NewtonOptions, Observer, Step, StepLoad, TrustRegion,
-};
-use subrope_fem::kinematics::Kinematics;
-use subrope_fem::linear::SolverOptions;
-use subrope_fem::{
-    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter,
-};
+use subrope_fem::FemError;
+use subrope_fem::analysis::{IncrementRecord, Increments, NewtonOptions, PathControl, TrustRegion};
 use subrope_geometry::CellKind;
 use subrope_material::{EngineeringConstants, StVenantKirchhoff};
+use subrope_tests::truss::{APEX_DOWN, HEIGHT, TOP, Truss, apex_force, column, limit_force, push, von_mises};
 use subrope_tests::{Brick, Lattice, Problem, Row, brick, constant_frames, rigid, run_scene};
-
-/// Bars of Green strain: `Pi = c/2 e^2`, `e = (l^2 - L^2)/2`, `c = EA/L^3`.
-struct Bars {
-    points: Vec<Vector3<f64>>,
-    ends: Vec<[u32; 2]>,
-    stiffness: Vec<f64>,
-}
-
-impl Contribution for Bars {
-    fn element_count(&self) -> usize {
-        self.ends.len()
-    }
-
-    fn element_nodes(&self, element: usize) -> &[u32] {
-        &self.ends[element]
-    }
-
-    fn is_symmetric(&self) -> bool {
-        true
-    }
-
-    fn has_potential(&self) -> bool {
-        true
-    }
-
-    fn assemble(
-        &mut self,
-        at: &Configuration<'_>,
-        request: Request,
-        sink: &mut dyn Sink,
-    ) -> Result<Energies, FemError> {
-        let mut out = Energies::default();
-        for (e, (&[a, b], &c)) in self.ends.iter().zip(&self.stiffness).enumerate() {
-            let moved = |n: u32| Vector3::from_fn(|k, _| at.displacement[3 * n as usize + k]);
-            let length = self.points[b as usize] - self.points[a as usize];
-            let change = moved(b) - moved(a);
-            let d = length + change;
-            let strain = length.dot(&change) + 0.5 * change.norm_squared();
-            out.potential += 0.5 * c * strain * strain;
-            let force = d * (c * strain);
-            let block = (d * d.transpose() + Matrix3::identity() * strain) * c;
-            let forces: [f64; 6] = std::array::from_fn(|i| if i % 2 == 0 { -force[i / 2] } else { force[i / 2] });
-            let matrix: [f64; 36] = std::array::from_fn(|i| {
-                let (row, column) = (i / 6, i % 6);
-                let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
-                sign * block[(row / 2, column / 2)]
-            });
-            sink.add(e, &forces, (request == Request::Tangent).then_some(&matrix));
-        }
-        out.stored = out.potential;
-        Ok(out)
-    }
-
-    fn commit(&mut self) {}
-
-    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
-        Ok(())
-    }
-
-    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
-        Ok(())
-    }
-}
 
 fn options(trust_region: TrustRegion) -> NewtonOptions {
     NewtonOptions { force_tolerance: 1e-11, trust_region, ..NewtonOptions::default() }
-}
-
-/// Bars `(from, to, EA/L^3)` between points, all of whose coordinates are held but some.
-struct Truss {
-    analysis: Analysis,
-    free: Vec<u32>,
-}
-
-#[derive(Default)]
-struct Keep(Vec<IncrementRecord>);
-
-impl Observer for Keep {
-    fn converged(&mut self, _: &Analysis, record: &IncrementRecord) -> Result<Control, FemError> {
-        self.0.push(record.clone());
-        Ok(Control::Continue)
-    }
-}
-
-impl Truss {
-    fn new(
-        points: &[[f64; 3]],
-        bars: &[(u32, u32, f64)],
-        free: &[u32],
-        options: NewtonOptions,
-    ) -> Result<Self, FemError> {
-        let points: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
-        let ends = bars.iter().map(|(a, b, _)| [*a, *b]).collect();
-        let stiffness = bars.iter().map(|b| b.2).collect();
-        let kinematics = Kinematics::new(points.clone(), Vec::new())?;
-        let model = Model { kinematics, contributions: vec![Box::new(Bars { points, ends, stiffness })] };
-        Ok(Self { analysis: Analysis::new(model, options, SolverOptions::default(), 1), free: free.to_vec() })
-    }
-
-    fn step(&self, increments: Increments) -> Step {
-        let coordinates = 0..self.analysis.coordinates().len() as u32;
-        let held = coordinates.filter(|c| !self.free.contains(c));
-        held.fold(Step::new("load", increments), |step, c| step.prescribe(c, 0.0))
-    }
-
-    fn run(&mut self, step: &Step) -> Result<Vec<IncrementRecord>, FemError> {
-        let mut keep = Keep::default();
-        self.analysis.run_step(step, &mut keep)?;
-        Ok(keep.0)
-    }
-}
-
-/// Height and half width of the flat truss of von Mises, and `EA/L^3` of its bars.
-const HEIGHT: f64 = 1.0;
-const WIDTH: f64 = 3.0;
-const BAR: f64 = 2.0;
-
-/// Force on the apex at a deflection: `c (w^3 - 3 h w^2 + 2 h^2 w)` of two bars.
-fn apex_force(w: f64) -> f64 {
-    BAR * w * (w - HEIGHT) * (w - 2.0 * HEIGHT)
-}
-
-/// The largest force, at `w = h (1 - 1/sqrt 3)`.
-fn limit_force() -> f64 {
-    BAR * HEIGHT.powi(3) * 2.0 / 27.0_f64.sqrt()
-}
-
-const APEX_DOWN: u32 = 3 * 2 + 2;
-
-/// Two bars on a flat apex; a bar without stiffness holds the body against turning about them.
-fn von_mises(options: NewtonOptions) -> Result<Truss, FemError> {
-    let points = [[-WIDTH, 0.0, 0.0], [WIDTH, 0.0, 0.0], [0.0, 0.0, HEIGHT], [0.0, 1.0, 0.0]];
-    Truss::new(&points, &[(0, 2, BAR), (1, 2, BAR), (0, 3, 0.0)], &[APEX_DOWN], options)
-}
-
-fn push(mut step: Step, coordinate: u32, force: f64) -> Step {
-    let load = Load { nodal: Vec::new(), coordinates: vec![(coordinate, force)] };
-    step.loads.push(StepLoad { load, path: std::sync::Arc::new(|fraction, _| fraction) });
-    step
 }
 
 /// Over the last corrections each residual is at most a constant times the square of the one before, down to rounding.
@@ -166,7 +26,8 @@ fn a_minimum_is_found_beyond_a_limit_point() -> Result<(), FemError> {
     let mut truss = von_mises(options(TrustRegion::Always))?;
     let step = push(truss.step(Increments::Fixed(10)), APEX_DOWN, -2.1 * limit_force());
     let records = truss.run(&step)?;
-    for record in &records {
+    for state in &records {
+        let record = &state.record;
         println!("{} {:?} {:?} {:e}", record.fraction, record.negative_pivots, record.residuals, record.released);
         assert!(record.minimised && record.negative_pivots == Some(0));
         assert!(ends_quadratically(record));
@@ -177,19 +38,10 @@ fn a_minimum_is_found_beyond_a_limit_point() -> Result<(), FemError> {
     let totals = truss.analysis.totals();
     assert_eq!((totals.jumps, totals.minimised, totals.cutbacks), (1, 10, 0));
     // The apex falls through between .84 and 1.05 times the largest force.
-    assert_eq!(records.iter().position(|r| r.released != 0.0), Some(4));
+    assert_eq!(records.iter().position(|r| r.record.released != 0.0), Some(4));
     assert!(totals.released > 0.0);
     Ok(())
 }
-
-/// A column of two bars in line with a hinge in the middle, which springs hold from both sides.
-fn column(options: NewtonOptions) -> Result<Truss, FemError> {
-    let points = [[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [-4.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
-    let bars = [(0, 1, 100.0), (1, 2, 100.0), (1, 3, 0.01), (1, 4, 0.01), (0, 5, 0.0)];
-    Truss::new(&points, &bars, &[3, 5], options)
-}
-
-const TOP: u32 = 8;
 
 #[test]
 fn a_bifurcation_is_left_for_the_stable_branch() -> Result<(), FemError> {
@@ -197,7 +49,7 @@ fn a_bifurcation_is_left_for_the_stable_branch() -> Result<(), FemError> {
         let mut truss = column(options(way))?;
         let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
         let records = truss.run(&step)?;
-        Ok((truss.analysis.coordinates()[3], records.last().and_then(|r| r.negative_pivots), truss))
+        Ok((truss.analysis.coordinates()[3], records.last().and_then(|r| r.record.negative_pivots), truss))
     };
     let (straight, pivots, newton) = run(TrustRegion::Off)?;
     assert_eq!((straight, pivots), (0.0, Some(1)), "Newton's method stays on the symmetric branch");
@@ -216,7 +68,7 @@ fn newtons_way_is_not_left_where_it_leads_on() -> Result<(), FemError> {
         let mut truss = column(options(way))?;
         let step = truss.step(Increments::Fixed(8)).prescribe(TOP, -0.2);
         let records = truss.run(&step)?;
-        assert!(records.iter().all(|r| !r.minimised));
+        assert!(records.iter().all(|r| !r.record.minimised));
         Ok(truss.analysis.coordinates().iter().map(|q| q.to_bits()).collect::<Vec<_>>())
     };
     assert_eq!(run(TrustRegion::Auto)?, run(TrustRegion::Off)?);
@@ -227,13 +79,19 @@ fn newtons_way_is_not_left_where_it_leads_on() -> Result<(), FemError> {
 #[test]
 fn a_stalled_run_goes_on_by_a_minimisation() -> Result<(), FemError> {
     let mut truss = von_mises(NewtonOptions { max_iterations: 5, ..options(TrustRegion::Auto) })?;
-    let increments = Increments::Automatic { initial: 0.1, minimum: 1e-3, maximum: 0.1, max_count: 1000 };
+    let increments = Increments::Automatic {
+        control: PathControl::Load,
+        initial: 0.1,
+        minimum: 1e-3,
+        maximum: 0.1,
+        max_count: 1000,
+    };
     let step = push(truss.step(increments), APEX_DOWN, -2.1 * limit_force());
     let records = truss.run(&step)?;
     let totals = truss.analysis.totals();
     println!("{totals:?}");
     assert!(totals.cutbacks > 0 && (1..5).contains(&totals.minimised) && totals.jumps == 1);
-    let jump = records.iter().position(|r| r.minimised && r.released > 0.0);
+    let jump = records.iter().position(|r| r.record.minimised && r.record.released > 0.0);
     assert!(jump.is_some());
     let w = -truss.analysis.coordinates()[APEX_DOWN as usize];
     assert!((apex_force(w) / (2.1 * limit_force()) - 1.0).abs() < 1e-9);

@@ -96,6 +96,12 @@ pub enum FemError {
         /// What failed last.
         cause: Box<FemError>,
     },
+    /// An increment along a path went back on the way that the last one had come.
+    #[error("the path turns back on itself near {fraction:.6} of the step")]
+    TurnsBack {
+        /// Where.
+        fraction: f64,
+    },
     /// A fixed increment failed.
     #[error(
         "step {step}, fixed increment {increment} failed: {cause}; allow automatic increments or take more of them"
@@ -246,6 +252,7 @@ impl FemError {
             | Self::RunsAway { .. }
             | Self::SearchOutdated
             | Self::Linear(_)
+            | Self::TurnsBack { .. }
             | Self::NotConverged { .. } => true,
             Self::Contribution { recoverable, .. } => *recoverable,
             _ => false,

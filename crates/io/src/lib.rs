@@ -26,7 +26,7 @@ pub use deck::{
 };
 pub use error::{Action, ErrorClass, IoError, OutputCause, OutputError, TextError, TextErrorKind, ValueError};
 pub use history::{Column, History, HistoryPlace, HistoryWriter, parse_history, read_history};
-pub use memory::{available_memory, peak_memory};
+pub use memory::{available_memory, peak_memory, resident_memory};
 pub use summary::{write_json, write_json_with};
 #[cfg(feature = "hdf5")]
 pub use vtkhdf::{

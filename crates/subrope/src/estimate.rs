@@ -161,6 +161,12 @@ pub fn limit() -> f64 {
     subrope_io::available_memory().map_or(UNKNOWN_SYSTEM, |bytes| bytes as f64)
 }
 
+/// Memory that a model may take which this process holds in part already \[bytes\].
+#[must_use]
+pub fn limit_with_held() -> f64 {
+    limit() + subrope_io::resident_memory().map_or(0.0, |bytes| bytes as f64)
+}
+
 /// Refuses what needs more memory than there is.
 ///
 /// # Errors

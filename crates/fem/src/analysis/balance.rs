@@ -87,7 +87,7 @@ impl Analysis {
         for i in 0..self.displacement.len() {
             add(target.nodal[i] - self.nodal_load[i], new.displacement[i] - self.displacement[i]);
         }
-        let length = attempt.to - attempt.from;
+        let length = attempt.length;
         let last_curvature = (self.last_length > 0.0).then_some(self.curvature);
         Ledger { before: self.totals, monotone, curvature: second / (length * length), last_curvature, length }
     }

@@ -1,6 +1,6 @@
 //! How a step is divided into increments.
 
-use super::step::{Increments, NewtonOptions, Step};
+use super::step::{Increments, NewtonOptions, PathControl, Step};
 use crate::FemError;
 
 /// How far a step is and how long the next increment shall be.
@@ -36,6 +36,7 @@ impl Division<'_> {
     pub fn next_end(&self, at: &Progress) -> f64 {
         match self.step.increments {
             Increments::Fixed(n) => (at.count + 1) as f64 / n as f64,
+            Increments::Automatic { control: PathControl::ArcLength, .. } => at.done + at.length,
             Increments::Automatic { .. } => {
                 let limit = self.step.knots.iter().copied().find(|k| *k > at.done * (1.0 + 1e-12)).unwrap_or(1.0);
                 // No crumb before a knot or at the end of a step.
@@ -44,7 +45,12 @@ impl Division<'_> {
         }
     }
 
-    /// After an increment to `to`.
+    /// Length of the next increment.
+    pub fn next_length(&self, at: &Progress) -> f64 {
+        if self.step.increments.are_arcs() { at.length } else { self.next_end(at) - at.done }
+    }
+
+    /// After an increment to `to`, which may lie before where it began.
     pub fn advance(&self, at: &mut Progress, to: f64, iterations: usize) {
         at.done = to;
         at.count += 1;
@@ -63,9 +69,23 @@ impl Division<'_> {
         }
     }
 
+    /// A path that ends is left for the minimum at a fraction beyond, as far as the first increment of the step went.
+    pub fn leave_path(&self, at: &mut Progress) {
+        if let Increments::Automatic { control: PathControl::ArcLength, initial, .. } = self.step.increments {
+            at.length = initial.min(1.0 - at.done);
+        }
+    }
+
+    /// Neither the path nor a minimum beyond leads on: nothing shorter is tried.
+    pub fn end_path(&self, at: &mut Progress) {
+        if self.step.increments.are_arcs() {
+            at.length = 0.0;
+        }
+    }
+
     /// Length of the next increment once it has been cut.
     fn shorter(&self, at: &Progress) -> f64 {
-        (self.next_end(at) - at.done) * self.options.cutback
+        self.next_length(at) * self.options.cutback
     }
 
     /// After a failed attempt.

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::arc_length::PathScale;
 use super::division::{Division, Progress};
 use super::factors::KeptFactors;
 use super::newton::Attempt;
@@ -27,10 +28,16 @@ pub struct Model {
 }
 
 impl Model {
+    /// Whether the tangent is symmetric, so that its factors tell the number of negative pivots.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.contributions.iter().all(|c| c.is_symmetric())
+    }
+
     /// Whether all forces derive from an incremental potential with a symmetric tangent, so that it can be minimised.
     #[must_use]
     pub fn can_be_minimised(&self) -> bool {
-        self.contributions.iter().all(|c| c.has_potential() && c.is_symmetric())
+        self.is_symmetric() && self.contributions.iter().all(|c| c.has_potential())
     }
 }
 
@@ -61,6 +68,8 @@ pub struct Analysis {
     /// Change of the coordinates over the last increment and its length.
     pub(super) last_change: Vec<f64>,
     pub(super) last_length: f64,
+    /// What arc lengths are measured in.
+    pub(super) path: PathScale,
     /// Second-order work of the last increment over its length squared \[mJ\].
     pub(super) curvature: f64,
     /// Committed nodal displacements.
@@ -124,6 +133,7 @@ impl Analysis {
             step_start: vec![0.0; coordinates],
             last_change: vec![0.0; coordinates],
             last_length: 0.0,
+            path: PathScale::default(),
             curvature: 0.0,
             displacement: vec![0.0; 3 * nodes],
             reaction: vec![0.0; coordinates],
@@ -267,13 +277,14 @@ impl Analysis {
             division.check_count(&self.progress)?;
             let from = self.progress.done;
             let to = division.next_end(&self.progress);
+            let length = division.next_length(&self.progress);
             let mut record = self.record(step, to, attempt);
             let last_resort = matches!(step.increments, Increments::Fixed(_));
             let minimise = stalled.is_some() || self.always_minimises();
-            match self.attempt(step, Attempt { from, to, last_resort, minimise }, &mut record) {
-                Ok(()) => {
-                    self.time += step.duration * (to - from);
-                    division.advance(&mut self.progress, to, record.iterations);
+            match self.attempt(step, Attempt { from, to, length, last_resort, minimise }, &mut record) {
+                Ok(done) => {
+                    self.time = record.time;
+                    division.advance(&mut self.progress, done.to, record.iterations);
                     (attempt, stalled) = (1, None);
                     if observer.converged(self, &record)? == Control::Stop {
                         return Err(FemError::Interrupted);
@@ -282,10 +293,15 @@ impl Analysis {
                 Err(cause) => {
                     self.totals.cutbacks += 1;
                     observer.failed(&record, &cause);
-                    let last = attempt >= NEWTON_ATTEMPTS || division.is_shortest(&self.progress);
+                    let tried = attempt >= NEWTON_ATTEMPTS && !step.increments.are_arcs();
+                    let last = tried || division.is_shortest(&self.progress);
                     if !minimise && last && self.may_minimise(step, &cause) {
+                        division.leave_path(&mut self.progress);
                         stalled = Some(cause);
                     } else {
+                        if minimise {
+                            division.end_path(&mut self.progress);
+                        }
                         let first = stalled.take().filter(|_| cause.is_recoverable());
                         division.cut(&mut self.progress, first.unwrap_or(cause))?;
                     }
@@ -301,11 +317,13 @@ impl Analysis {
         self.options.trust_region == TrustRegion::Always && self.model.can_be_minimised()
     }
 
-    /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer.
+    /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer,
+    /// unless that was far from the path.
     fn may_minimise(&self, step: &Step, cause: &FemError) -> bool {
+        let stalled = matches!(cause, FemError::NotConverged { .. } | FemError::RunsAway { .. } | FemError::Linear(_));
         self.options.trust_region == TrustRegion::Auto
             && matches!(step.increments, Increments::Automatic { .. })
-            && matches!(cause, FemError::NotConverged { .. } | FemError::RunsAway { .. } | FemError::Linear(_))
+            && (stalled || (step.increments.are_arcs() && cause.is_recoverable()))
             && self.model.can_be_minimised()
     }
 
@@ -314,6 +332,7 @@ impl Analysis {
         self.analyse(step)?;
         // A new step turns elsewhere: nothing to continue.
         self.last_length = 0.0;
+        self.path = PathScale::default();
         self.step_start.copy_from_slice(&self.q);
         for ((before, &load), &peak) in self.before.iter_mut().zip(&self.coordinate_load).zip(&self.peak) {
             *before = LoadBefore { load, peak };
@@ -341,6 +360,7 @@ impl Analysis {
             negative_pivots: None,
             inertia_change: None,
             minimised: false,
+            switched: false,
             released: 0.0,
         }
     }

@@ -1,10 +1,13 @@
 //! Steps, increments and Newton iterations.
 
+mod arc_length;
 mod balance;
+mod branch;
 mod division;
 mod driver;
 mod factors;
 mod line_search;
+mod mode;
 mod newton;
 mod record;
 mod rigid;
@@ -18,6 +21,7 @@ pub use driver::{Analysis, LastTrial, Model};
 pub use record::{Control, IncrementRecord, Observer, Phase, Phases, Silent, Totals};
 pub use rigid::rigid_motions;
 pub use step::{
-    Increments, Load, LoadBefore, LoadPath, NewtonOptions, Path, Prescription, Step, StepLoad, TrustRegion,
+    BranchChoice, Increments, Load, LoadBefore, LoadPath, NewtonOptions, Path, PathControl, Prescription, Step,
+    StepLoad, TrustRegion,
 };
 pub use viscous::Viscous;

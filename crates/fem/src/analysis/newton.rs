@@ -13,7 +13,10 @@ use crate::{Equations, FemError};
 #[derive(Clone, Copy, Debug)]
 pub struct Attempt {
     pub from: f64,
+    /// On a path with arc lengths not known before it has been followed.
     pub to: f64,
+    /// Length of the increment: the fraction it goes on by, or its arc.
+    pub length: f64,
     /// Whether to iterate on while there is no headway: nothing shorter can be tried.
     pub last_resort: bool,
     /// Whether to minimise the incremental potential.
@@ -41,32 +44,38 @@ const SMALL_REACTION: f64 = 1e-6;
 const REST: f64 = 1e-3;
 
 impl Analysis {
-    /// Solves for the state at the end of an attempt and commits it. On an error nothing has changed.
+    /// Solves for the state at the end of an attempt and commits it; answers the attempt as it ended. On an error nothing
+    /// has changed.
     pub(super) fn attempt(
         &mut self,
         step: &Step,
         attempt: Attempt,
         record: &mut IncrementRecord,
-    ) -> Result<(), FemError> {
+    ) -> Result<Attempt, FemError> {
         self.search(None)?;
         let mut work = std::mem::take(&mut self.work);
         work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
-        let mut outcome = self.find(&mut work, attempt, record);
+        let mut outcome = self.find(&mut work, step, attempt, record);
         for _ in 0..SEARCHES {
             if !matches!(outcome, Err(FemError::SearchOutdated)) {
                 break;
             }
             let at = std::mem::take(&mut self.outdated_at);
-            outcome = self.search(Some(&at)).and_then(|()| self.find(&mut work, attempt, record));
+            outcome = self.search(Some(&at)).and_then(|()| self.find(&mut work, step, attempt, record));
         }
         self.totals.iterations += record.iterations;
-        if outcome.is_ok() {
+        if let Ok(attempt) = outcome {
+            record.end(attempt, self.time + step.duration * attempt.length);
             self.totals.note_inertia(record);
             let before = self.ledger(&work, attempt);
-            self.commit(&mut work, attempt);
-            if attempt.minimise {
-                self.totals.minimised += 1;
-                // The way of a minimisation is no direction to go on in.
+            let external = self.commit(&mut work, attempt);
+            if step.increments.are_arcs() {
+                self.note_path(attempt, &work.base.energies, external);
+            }
+            self.totals.minimised += usize::from(attempt.minimise);
+            self.totals.switched += usize::from(record.switched);
+            if attempt.minimise || (record.switched && !step.increments.are_arcs()) {
+                // The way to a minimum or to another branch is no direction to go on in.
                 self.last_length = 0.0;
             }
             self.settle_account(&before, record);
@@ -75,28 +84,56 @@ impl Analysis {
         outcome
     }
 
-    /// Finds the state at the end of an attempt, by Newton's method or as a minimum.
-    fn find(&mut self, work: &mut Workspace, attempt: Attempt, record: &mut IncrementRecord) -> Result<(), FemError> {
-        if !attempt.minimise {
-            return self.iterate(work, attempt, record);
+    /// Finds the state at the end of an attempt, by Newton's method, along the path or as a minimum.
+    fn find(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        mut attempt: Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<Attempt, FemError> {
+        record.minimised = attempt.minimise;
+        if attempt.minimise {
+            self.minimise(work, attempt, record)?;
+        } else if step.increments.are_arcs() {
+            self.follow(work, step, &mut attempt, record)?;
+        } else {
+            self.iterate(work, attempt, record)?;
         }
-        record.minimised = true;
-        self.minimise(work, attempt, record)
+        if !attempt.minimise {
+            self.choose_branch(work, step, &mut attempt, record)?;
+        }
+        Ok(attempt)
     }
 
-    fn iterate(
+    /// Forgets all that an earlier attempt has left.
+    pub(super) fn start_anew(&mut self, work: &mut Workspace) {
+        self.model.contributions.iter_mut().for_each(|c| c.revert());
+        work.factors.forget();
+    }
+
+    pub(super) fn iterate(
         &mut self,
         work: &mut Workspace,
         attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
-        self.model.contributions.iter_mut().for_each(|c| c.revert());
-        work.factors.forget();
+        self.start_anew(work);
         self.first_iterate(work, attempt, record)?;
+        self.iterate_on(work, attempt, record, (0, 0))
+    }
+
+    /// Newton's method from the base, which is evaluated; `spent` and `seen` are the iterations and residuals before this
+    /// round of multipliers.
+    pub(super) fn iterate_on(
+        &mut self,
+        work: &mut Workspace,
+        attempt: Attempt,
+        record: &mut IncrementRecord,
+        (mut spent, mut seen): (usize, usize),
+    ) -> Result<(), FemError> {
         let mut largest_energy = 0.0_f64;
         let mut energy = 0.0;
-        // Iterations and residuals before this round of multipliers.
-        let (mut spent, mut seen) = (0, 0);
         loop {
             let tolerance = self.options.force_tolerance;
             let relative = relative_residual(&work.base);
@@ -158,7 +195,7 @@ impl Analysis {
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
         if self.options.extrapolate && self.last_length > 0.0 {
-            let ratio = (attempt.to - attempt.from) / self.last_length;
+            let ratio = attempt.length / self.last_length;
             for ((q, committed), change) in work.base.q.iter_mut().zip(&self.q).zip(&self.last_change) {
                 *q = committed + ratio * change;
             }
@@ -219,7 +256,7 @@ impl Analysis {
     }
 
     /// Factorises at the base and solves for the correction.
-    fn correct(&mut self, work: &mut Workspace) -> Result<Option<usize>, FemError> {
+    pub(super) fn correct(&mut self, work: &mut Workspace) -> Result<Option<usize>, FemError> {
         self.totals.factorisations += 1;
         let Some(system) = self.system.as_mut() else { return Ok(None) };
         let pivots = self.phases.measure(Phase::Factorisation, || system.factorise())?;
@@ -315,12 +352,12 @@ impl Analysis {
         }
     }
 
-    fn is_rotation(&self, coordinate: usize) -> bool {
+    pub(super) fn is_rotation(&self, coordinate: usize) -> bool {
         self.model.kinematics.is_rotation(coordinate)
     }
 
-    /// The trial becomes the committed state; the work of the increment by the trapezoidal rule.
-    fn commit(&mut self, work: &mut Workspace, attempt: Attempt) {
+    /// The trial becomes the committed state; answers the work of the increment by the trapezoidal rule \[mJ\].
+    fn commit(&mut self, work: &mut Workspace, attempt: Attempt) -> f64 {
         let (new, target) = (&work.base, &work.target);
         let mut external = 0.0;
         for c in 0..self.q.len() {
@@ -350,7 +387,7 @@ impl Analysis {
             self.totals.dissipated_mid[mode] += new.energies.dissipated_mid[mode];
         }
         self.totals.increments += 1;
-        self.last_length = attempt.to - attempt.from;
+        self.last_length = attempt.length;
         self.q.copy_from_slice(&new.q);
         self.displacement.copy_from_slice(&new.displacement);
         self.reaction.copy_from_slice(&new.residual);
@@ -366,6 +403,7 @@ impl Analysis {
             self.totals.dissipated[0] += transverse;
             self.totals.dissipated[1] += longitudinal;
         }
+        external
     }
 }
 
@@ -377,7 +415,7 @@ pub(super) fn relative_residual(iterate: &Iterate) -> f64 {
 const PATIENCE: usize = 10;
 
 /// Whether more iterations are wasted: no headway over the last six, or a residual beyond all bounds.
-fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
+pub(super) fn hopeless(residuals: &[f64], last_resort: bool) -> bool {
     let n = residuals.len();
     let stalled = !last_resort && n > PATIENCE && residuals[n - 1] > 0.1 * residuals[n - 7];
     stalled || residuals.last().is_some_and(|r| *r > 1e12)
@@ -393,7 +431,14 @@ impl Workspace {
 
 impl super::workspace::Target {
     /// Loads and prescribed values at the end of an attempt.
-    fn fill(&mut self, step: &Step, attempt: Attempt, start: &[f64], released: &[(u32, f64)], before: &[LoadBefore]) {
+    pub(super) fn fill(
+        &mut self,
+        step: &Step,
+        attempt: Attempt,
+        start: &[f64],
+        released: &[(u32, f64)],
+        before: &[LoadBefore],
+    ) {
         self.prescribed.clear();
         let value = |p: &Prescription| (p.coordinate, (p.path)(attempt.to, start[p.coordinate as usize]));
         self.prescribed.extend(step.prescriptions.iter().map(value));
@@ -415,11 +460,11 @@ impl super::workspace::Target {
                 self.coordinates[*c as usize] += factor * force;
             }
         }
-        self.time_increment = step.duration * (attempt.to - attempt.from);
+        self.time_increment = step.duration * attempt.length;
     }
 
     /// Sets the prescribed coordinates.
-    fn impose(&self, q: &mut [f64]) {
+    pub(super) fn impose(&self, q: &mut [f64]) {
         for &(c, value) in &self.prescribed {
             q[c as usize] = value;
         }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::Analysis;
+use super::newton::Attempt;
 use crate::FemError;
 
 /// Parts of a run whose time is measured.
@@ -80,6 +81,8 @@ pub struct Totals {
     pub inertia_changes: usize,
     /// Converged increments that were found by minimising the incremental potential.
     pub minimised: usize,
+    /// Converged increments that left an unstable branch for one that forks off it.
+    pub switched: usize,
     /// Converged increments with a snap: energy left, or came, that forces and dissipation do not account for.
     pub jumps: usize,
     /// Energy released in them; negative where states of higher energy were jumped to.
@@ -110,7 +113,7 @@ pub struct IncrementRecord {
     pub attempt: usize,
     /// Fraction of the step at its end.
     pub fraction: f64,
-    /// Length as a fraction of the step.
+    /// Length as a fraction of the step, or of the path where that has arc lengths.
     pub length: f64,
     /// Time at its end \[s\].
     pub time: f64,
@@ -124,12 +127,19 @@ pub struct IncrementRecord {
     pub inertia_change: Option<(usize, usize)>,
     /// Whether the attempt minimised the incremental potential.
     pub minimised: bool,
+    /// Whether it left an unstable branch for one that forks off it.
+    pub switched: bool,
     /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none, negative where the state has
     /// more energy than was put in.
     pub released: f64,
 }
 
 impl IncrementRecord {
+    /// Notes where a converged attempt has ended.
+    pub(super) fn end(&mut self, attempt: Attempt, time: f64) {
+        (self.fraction, self.length, self.time) = (attempt.to, attempt.length, time);
+    }
+
     /// Last relative residual; none when the attempt failed before its first iterate.
     #[must_use]
     pub fn residual(&self) -> Option<f64> {

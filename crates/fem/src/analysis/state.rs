@@ -5,6 +5,7 @@
 
 use std::time::Duration;
 
+use super::arc_length::PathScale;
 use super::division::Progress;
 use super::driver::Analysis;
 use super::record::{Phases, Totals};
@@ -32,6 +33,8 @@ impl Analysis {
         let Progress { done, length, count } = self.progress;
         let (largest, stiffness) = (self.largest_reference, self.stiffness_scale);
         let scalars = [largest, stiffness, self.last_length, self.time, done, length, self.curvature];
+        let PathScale { motion, work, advance, dissipation } = self.path;
+        state.numbers("path", 4, &mut [motion, work, advance, dissipation].into_iter())?;
         state.numbers("scalars", scalars.len(), &mut scalars.into_iter())?;
         state.counts("progress", 2, &mut [self.steps_done as u64, count as u64].into_iter())?;
         let (energies, counts) = self.totals.kept();
@@ -81,8 +84,15 @@ impl Analysis {
         state.read_numbers("scalars", &mut scalars)?;
         let [largest_reference, stiffness_scale, last_length, time, done, length, curvature] = scalars;
         let [steps_done, count] = counts(state, "progress")?;
-        if !((0.0..=1.0).contains(&done) && length > 0.0 && length <= 1.0 && time.is_finite() && curvature.is_finite())
-        {
+        let mut path = [0.0; 4];
+        state.read_numbers("path", &mut path)?;
+        let [motion, work, advance, dissipation] = path;
+        self.path = PathScale { motion, work, advance, dissipation };
+        if path.iter().any(|value| !value.is_finite()) {
+            return Err(StateError::Value { name: "path".into() }.into());
+        }
+        // On a path with arc lengths the fraction may lie below zero.
+        if !(done <= 1.0 && length > 0.0 && length <= 1.0 && time.is_finite() && curvature.is_finite()) {
             return Err(StateError::Value { name: "scalars".into() }.into());
         }
         (self.largest_reference, self.stiffness_scale) = (largest_reference, stiffness_scale);
@@ -149,7 +159,7 @@ fn counts<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N
 }
 
 impl Totals {
-    fn kept(&self) -> ([f64; 13], [u64; 12]) {
+    fn kept(&self) -> ([f64; 13], [u64; 13]) {
         // Taken apart, so that nothing that is added later can be forgotten.
         let Self {
             external_work,
@@ -172,6 +182,7 @@ impl Totals {
             negative_pivots,
             inertia_changes,
             minimised,
+            switched,
             jumps,
             released,
             open,
@@ -205,11 +216,12 @@ impl Totals {
             inertia_changes,
             jumps,
             minimised,
+            switched,
         ];
         (energies, counts.map(|n| n as u64))
     }
 
-    fn of_kept(energies: [f64; 13], counts: [u64; 12]) -> Self {
+    fn of_kept(energies: [f64; 13], counts: [u64; 13]) -> Self {
         let c = counts.map(|n| n as usize);
         Self {
             external_work: energies[0],
@@ -233,6 +245,7 @@ impl Totals {
             inertia_changes: c[9],
             jumps: c[10],
             minimised: c[11],
+            switched: c[12],
             open: energies[12],
             released: energies[11],
         }

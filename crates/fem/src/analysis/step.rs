@@ -53,8 +53,11 @@ pub struct StepLoad {
 pub enum Increments {
     /// So many equal increments, neither grown nor cut.
     Fixed(usize),
-    /// Cut on failure, grown when convergence is easy. All lengths as fractions of the step.
+    /// Cut on failure, grown when convergence is easy. All lengths as fractions of the step, or of an arc that is measured
+    /// like them.
     Automatic {
+        /// What a length is.
+        control: PathControl,
         /// First increment.
         initial: f64,
         /// Below this the step is given up.
@@ -64,6 +67,17 @@ pub enum Increments {
         /// Most converged increments.
         max_count: usize,
     },
+}
+
+/// What an increment goes on by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PathControl {
+    /// The fraction of the step.
+    #[default]
+    Load,
+    /// Arc length along the equilibrium path: the fraction is an unknown, which may go back. For motions and loads without
+    /// corners, from the start of the step to its end.
+    ArcLength,
 }
 
 /// One step: motions and loads that change together.
@@ -81,6 +95,14 @@ pub struct Step {
     pub increments: Increments,
     /// Fractions in \]0, 1\[ at which a path has a corner, rising: automatic increments end there.
     pub knots: Vec<f64>,
+}
+
+impl Increments {
+    /// Whether the fraction of the step is an unknown.
+    #[must_use]
+    pub fn are_arcs(&self) -> bool {
+        matches!(self, Self::Automatic { control: PathControl::ArcLength, .. })
+    }
 }
 
 impl Prescription {
@@ -127,6 +149,16 @@ pub enum TrustRegion {
     Always,
 }
 
+/// What becomes of an increment that has passed a fork of equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BranchChoice {
+    /// It stays on the branch it has come on, which is unstable from there.
+    #[default]
+    Follow,
+    /// It leaves for the branch that forks off, if one is found. That needs a symmetric tangent, whose pivots tell.
+    Switch,
+}
+
 /// Settings of the Newton iteration and of the stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonOptions {
@@ -140,6 +172,8 @@ pub struct NewtonOptions {
     pub line_search: bool,
     /// When the incremental potential is minimised instead.
     pub trust_region: TrustRegion,
+    /// What becomes of an increment that has passed a fork of equilibrium.
+    pub branch: BranchChoice,
     /// Whether the first iterate continues the last increment.
     pub extrapolate: bool,
     /// Whether large factors serve later iterates of an attempt, as the preconditioner of GMRES.
@@ -162,6 +196,7 @@ impl Default for NewtonOptions {
             max_iterations: 25,
             line_search: true,
             trust_region: TrustRegion::Auto,
+            branch: BranchChoice::Follow,
             extrapolate: true,
             keep_factors: true,
             growth: 1.5,

@@ -18,6 +18,7 @@
 
 use super::driver::Analysis;
 use super::line_search::{ENERGY_NOISE, ends_search};
+use super::mode::Metric;
 use super::newton::{Attempt, relative_residual};
 use super::record::{IncrementRecord, Phase};
 use super::workspace::Workspace;
@@ -44,10 +45,6 @@ const POOR: f64 = 0.25;
 const GOOD: f64 = 0.75;
 /// Fall of the model, over the rounding of the potential, from which differences of the potential are trusted.
 const CLEAR: f64 = 1e4;
-/// Steps of inverse iteration for the mode of least stiffness.
-const INVERSE_STEPS: usize = 8;
-/// Part of the largest diagonal entry below which no weight lies.
-const LEAST_WEIGHT: f64 = 1e-8;
 
 /// The region, and what does not change from step to step.
 struct Region {
@@ -57,8 +54,7 @@ struct Region {
     least: f64,
     /// The last shift that was not zero.
     shift: f64,
-    /// `D`.
-    weights: Vec<f64>,
+    metric: Metric,
     /// Diagonal of the tangent at the base.
     diagonal: Vec<f64>,
     /// A vector of unknowns.
@@ -69,27 +65,16 @@ struct Region {
 
 impl Region {
     fn new(system: &System) -> Self {
-        let n = system.equations().len();
-        let mut weights = vec![0.0; n];
-        system.diagonal(&mut weights);
-        let largest = weights.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
-        let least = if largest > 0.0 { LEAST_WEIGHT * largest } else { 1.0 };
-        weights.iter_mut().for_each(|w| *w = w.abs().max(least));
-        let diagonal = vec![0.0; n];
+        let zeros = vec![0.0; system.equations().len()];
         Self {
             radius: 0.0,
             least: 0.0,
             shift: FIRST_SHIFT,
-            weights,
-            buffer: diagonal.clone(),
-            mode: diagonal.clone(),
-            diagonal,
+            metric: Metric::of_stiffness(system),
+            diagonal: zeros.clone(),
+            buffer: zeros.clone(),
+            mode: zeros,
         }
-    }
-
-    /// `|x|`.
-    fn length(&self, x: &[f64]) -> f64 {
-        self.weights.iter().zip(x).map(|(w, x)| w * x * x).sum::<f64>().sqrt()
     }
 
     /// After a step of some length whose fall over that of the model is known.
@@ -139,8 +124,7 @@ impl Analysis {
         attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
-        self.model.contributions.iter_mut().for_each(|c| c.revert());
-        work.factors.forget();
+        self.start_anew(work);
         self.first_iterate(work, attempt, record)?;
         let mut region = self.region(work)?;
         let last = record.iterations + MOST_STEPS * self.options.max_iterations;
@@ -170,8 +154,8 @@ impl Analysis {
         let moved: Vec<f64> = work.base.q.iter().zip(&self.q).map(|(new, old)| new - old).collect();
         system.equations().gather(&moved, &mut region.buffer);
         work.aim(system.equations());
-        let jacobi = work.rhs.iter().zip(&region.weights).map(|(r, w)| r * r / w).sum::<f64>().sqrt();
-        region.radius = region.length(&region.buffer).max(jacobi);
+        let jacobi = work.rhs.iter().zip(&region.metric.weights).map(|(r, w)| r * r / w).sum::<f64>().sqrt();
+        region.radius = region.metric.length(&region.buffer).max(jacobi);
         region.least = NOTHING * region.radius;
         Ok(region)
     }
@@ -187,7 +171,7 @@ impl Analysis {
         }
     }
 
-    fn count_negative_pivots(&mut self) -> Result<Option<usize>, FemError> {
+    pub(super) fn count_negative_pivots(&mut self) -> Result<Option<usize>, FemError> {
         self.totals.factorisations += 1;
         let Some(system) = self.system.as_mut() else { return Ok(None) };
         self.phases.measure(Phase::Factorisation, || system.factorise())
@@ -208,7 +192,7 @@ impl Analysis {
         while record.iterations < last && region.radius >= region.least {
             let predicted = self.step_within(work, region)?;
             record.iterations += 1;
-            let length = region.length(&work.correction);
+            let length = region.metric.length(&work.correction);
             let downhill = predicted > 0.0 && length > 0.0;
             if !downhill {
                 break;
@@ -252,8 +236,8 @@ impl Analysis {
                 shift = bracket.inner(region.shift);
                 continue;
             }
-            self.solve_shifted(&work.rhs, &mut work.correction)?;
-            let ratio = region.length(&work.correction) / region.radius;
+            self.solve_by_factors(&work.rhs, &mut work.correction)?;
+            let ratio = region.metric.length(&work.correction) / region.radius;
             if shift > 0.0 {
                 region.shift = shift;
             }
@@ -277,7 +261,7 @@ impl Analysis {
     /// Factorises `K + shift D`; says whether it is positive definite.
     fn is_definite(&mut self, region: &Region, shift: f64) -> Result<bool, FemError> {
         if let Some(system) = self.system.as_mut() {
-            let shifted = region.diagonal.iter().zip(&region.weights).map(|(k, w)| k + shift * w);
+            let shifted = region.diagonal.iter().zip(&region.metric.weights).map(|(k, w)| k + shift * w);
             system.set_diagonal(shifted);
         }
         match self.count_negative_pivots() {
@@ -287,22 +271,16 @@ impl Analysis {
         }
     }
 
-    fn solve_shifted(&mut self, rhs: &[f64], x: &mut [f64]) -> Result<(), FemError> {
-        let Some(system) = self.system.as_mut() else { return Ok(()) };
-        self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
-        Ok(())
-    }
-
     /// Newton's next shift for `1/|p(s)| = 1/radius`, with `d|p|^2/ds = -2 p.D (K + s D)^-1 D p`.
     fn secular(&mut self, work: &Workspace, region: &mut Region, shift: f64) -> Result<f64, FemError> {
         let p = &work.correction;
         let mut rhs = std::mem::take(&mut region.buffer);
-        weigh(&region.weights, p, &mut rhs);
-        let solved = self.solve_shifted(&rhs, &mut region.mode);
+        region.metric.weigh(p, &mut rhs);
+        let solved = self.solve_by_factors(&rhs, &mut region.mode);
         let bend: f64 = rhs.iter().zip(&region.mode).map(|(a, b)| a * b).sum();
         region.buffer = rhs;
         solved?;
-        let length = region.length(p);
+        let length = region.metric.length(p);
         Ok(shift + length * length / bend * (length / region.radius - 1.0))
     }
 
@@ -319,7 +297,7 @@ impl Analysis {
             work.correction.iter_mut().for_each(|p| *p /= ratio);
             return Ok(());
         }
-        self.find_mode(&work.correction, region)?;
+        self.least_mode(&region.metric, &work.correction, &mut region.mode, &mut region.buffer)?;
         let mode = &region.mode;
         let stiffness = self.quadratic(mode, &mut region.buffer)? - shift;
         if stiffness < 0.0 {
@@ -331,29 +309,10 @@ impl Analysis {
         Ok(())
     }
 
-    /// The mode of least stiffness, of length one, by inverse iteration with the factors at hand.
-    fn find_mode(&mut self, start: &[f64], region: &mut Region) -> Result<(), FemError> {
-        let scale = region.length(start) / (start.len() as f64).sqrt();
-        let scale = if scale > 0.0 { scale } else { 1.0 };
-        // A start that shares no symmetry with the model.
-        let entries = region.mode.iter_mut().zip(start).zip(&region.weights).enumerate();
-        entries.for_each(|(i, ((m, p), w))| *m = p + scale * irregular(i) / w.sqrt());
-        let mut rhs = std::mem::take(&mut region.buffer);
-        let mut outcome = Ok(());
-        for _ in 0..INVERSE_STEPS {
-            weigh(&region.weights, &region.mode, &mut rhs);
-            outcome = outcome.and_then(|()| self.solve_shifted(&rhs, &mut region.mode));
-            let length = region.length(&region.mode);
-            region.mode.iter_mut().for_each(|m| *m /= length);
-        }
-        region.buffer = rhs;
-        outcome
-    }
-
     /// `-m(p)` of the correction, whose tangent is shifted.
     fn model_fall(&self, work: &Workspace, region: &mut Region, shift: f64) -> Result<f64, FemError> {
         let p = &work.correction;
-        let length = region.length(p);
+        let length = region.metric.length(p);
         let curved = self.quadratic(p, &mut region.buffer)? - shift * length * length;
         let along: f64 = work.rhs.iter().zip(p).map(|(r, p)| r * p).sum();
         Ok(along - 0.5 * curved)
@@ -367,16 +326,6 @@ impl Analysis {
     }
 }
 
-/// `D x`.
-fn weigh(weights: &[f64], x: &[f64], out: &mut [f64]) {
-    out.iter_mut().zip(weights).zip(x).for_each(|((o, w), x)| *o = w * x);
-}
-
-/// A number between -1 and 1 that follows no pattern: multiples of the golden ratio, modulo one.
-fn irregular(index: usize) -> f64 {
-    2.0 * ((index + 1) as f64 * 0.618_033_988_749_894_9).fract() - 1.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -387,7 +336,7 @@ mod tests {
             radius: 2.0,
             least: 0.0,
             shift: 1.0,
-            weights: vec![4.0, 1.0],
+            metric: Metric { weights: vec![4.0, 1.0] },
             diagonal: two.clone(),
             buffer: two.clone(),
             mode: two,
@@ -405,7 +354,7 @@ mod tests {
         assert_eq!(region.radius, 4.0);
         region.adapt(-1.0, 2.0);
         assert_eq!(region.radius, 0.5);
-        assert_eq!(region.length(&[1.0, 2.0]), 8.0_f64.sqrt());
+        assert_eq!(region.metric.length(&[1.0, 2.0]), 8.0_f64.sqrt());
     }
 
     #[test]

@@ -97,6 +97,13 @@ pub enum ModelError {
          \"symmetric\", or write trust_region = \"auto\""
     )]
     NoPotential,
+    /// Branches are to be switched, and the tangent does not tell where they fork.
+    #[error(
+        "solver.branch = \"switch\" needs a symmetric tangent, whose pivots tell where equilibrium forks: friction grows with pressure \
+         (mu_t, mu_l), or that of contacts is exact; leave mu_t and mu_l out and set contact.tangent = \"symmetric\", or write \
+         branch = \"follow\""
+    )]
+    NoPivots,
     /// The normal of a section free in radius is not defined.
     #[error("the nodes of section \"{name}\" do not span a plane, so that they have no radius")]
     NoSectionNormal {
@@ -132,6 +139,17 @@ pub enum ModelError {
         component: &'static str,
         /// Label of the node.
         node: u64,
+    },
+    /// A corner of a history on a path with arc lengths.
+    #[error(
+        "step \"{step}\": a history has a corner at {knot} of the step: increments with control = \"arc_length\" need loads and \
+         motions that grow linearly from its start to its end; divide the step there"
+    )]
+    KnotOnArc {
+        /// Step.
+        step: String,
+        /// Fraction of the step.
+        knot: f64,
     },
     /// A corner of a history between two fixed increments.
     #[error(

@@ -19,7 +19,7 @@ pub(crate) use rigid::size;
 pub use slice::SliceShape;
 
 use nalgebra::Vector3;
-use subrope_fem::analysis::{Analysis, Model, NewtonOptions, Silent, Step, TrustRegion, Viscous};
+use subrope_fem::analysis::{Analysis, BranchChoice, Model, NewtonOptions, Silent, Step, TrustRegion, Viscous};
 use subrope_fem::kinematics::{Kinematics, Section, SectionKind, Slide};
 use subrope_fem::linear::SolverOptions;
 use subrope_fem::{Contribution, FemError, Repeated};
@@ -100,6 +100,9 @@ impl RopeModel {
         if scene.solver.trust_region == scene::TrustRegion::Always && !model.can_be_minimised() {
             return Err(ModelError::NoPotential);
         }
+        if scene.solver.branch == scene::BranchChoice::Switch && !model.is_symmetric() {
+            return Err(ModelError::NoPivots);
+        }
         let kinematics = &model.kinematics;
         let program = Program::new(scene);
         let steps = steps::steps(scene, &program, &mesh, kinematics)?;
@@ -171,7 +174,7 @@ impl RopeModel {
     pub fn check_memory(&self) -> Result<(), ModelError> {
         let mesh = &self.mesh.mesh;
         let what = || format!("{} elements with {} nodes and their factor", mesh.cell_count(), mesh.point_count());
-        estimate::refuse_beyond(what, estimate::memory_of(self), estimate::limit())
+        estimate::refuse_beyond(what, estimate::memory_of(self), estimate::limit_with_held())
     }
 
     /// Bytes of state per integration point, committed and trial; 0 for an elastic law.
@@ -210,6 +213,10 @@ fn newton(scene: &Scene) -> NewtonOptions {
             scene::TrustRegion::Auto => TrustRegion::Auto,
             scene::TrustRegion::Off => TrustRegion::Off,
             scene::TrustRegion::Always => TrustRegion::Always,
+        },
+        branch: match solver.branch {
+            scene::BranchChoice::Follow => BranchChoice::Follow,
+            scene::BranchChoice::Switch => BranchChoice::Switch,
         },
         extrapolate: solver.extrapolate,
         keep_factors: solver.keep_factors,

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use subrope_fem::analysis::{Increments, LoadBefore, Prescription, Step, StepLoad};
+use subrope_fem::analysis::{Increments, LoadBefore, PathControl, Prescription, Step, StepLoad};
 use subrope_fem::kinematics::{Kinematics, NodeRule};
 
 use super::{MeshModel, ModelError, loads};
 use crate::estimate;
-use crate::scene::{Incrementation, Motion, MotionPath, MotionTarget, Program, ProgramStep, Scene};
+use crate::scene::{self, Incrementation, Motion, MotionPath, MotionTarget, Program, ProgramStep, Scene};
 
 /// Memory of a prescribed coordinate or a load in one step \[bytes\].
 const PRESCRIPTION: f64 = 100.0;
@@ -59,11 +59,20 @@ fn one(scene: &Scene, step: &ProgramStep, mesh: &MeshModel, kinematics: &Kinemat
     }
     let increments = match step.increments {
         Incrementation::Fixed { count } => Increments::Fixed(count),
-        Incrementation::Automatic { initial, minimum, maximum, max_count } => {
-            Increments::Automatic { initial, minimum, maximum, max_count }
+        Incrementation::Automatic { initial, minimum, maximum, max_count, control } => {
+            let control = match control {
+                scene::PathControl::Load => PathControl::Load,
+                scene::PathControl::ArcLength => PathControl::ArcLength,
+            };
+            Increments::Automatic { initial, minimum, maximum, max_count, control }
         }
     };
     let knots = knots(step);
+    if increments.are_arcs()
+        && let Some(knot) = knots.first()
+    {
+        return Err(ModelError::KnotOnArc { step: step.name.clone(), knot: *knot });
+    }
     if let Increments::Fixed(count) = increments
         && let Some(knot) = knots.iter().find(|k| ((**k * count as f64).round() - **k * count as f64).abs() > 1e-9)
     {

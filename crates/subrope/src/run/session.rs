@@ -304,6 +304,12 @@ impl Watch<'_> {
                 "inertia changed from {before} to {now} negative pivot(s) {at}: {meaning} (history.csv, negative_pivots)"
             ));
         }
+        if record.switched {
+            self.observer.on_warning(&format!(
+                "branch switched {at}: equilibrium has forked, and the branch that forks off is followed (summary.json, \
+                 counts.switched)"
+            ));
+        }
         let energy = record.released;
         if energy != 0.0 {
             let what = if energy > 0.0 { "released" } else { "appeared" };

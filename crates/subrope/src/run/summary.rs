@@ -213,6 +213,8 @@ pub struct CountSummary {
     pub jumps: usize,
     /// Converged increments found by minimising the incremental potential.
     pub minimised: usize,
+    /// Converged increments that left an unstable branch for one that forks off it.
+    pub switched: usize,
 }
 
 /// What took how long.
@@ -423,6 +425,7 @@ fn counts(model: &RopeModel) -> CountSummary {
         inertia_changes: t.inertia_changes,
         jumps: t.jumps,
         minimised: t.minimised,
+        switched: t.switched,
     }
 }
 

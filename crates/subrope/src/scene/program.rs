@@ -109,14 +109,15 @@ pub struct Path {
 }
 
 impl Path {
-    /// The value at a fraction of the step; `reached` takes the place of an unknown start.
+    /// The value at a fraction of the step, below 0 and above 1 as the line there goes on; `reached` takes the place of an unknown start.
     #[must_use]
     pub fn value(&self, fraction: f64, reached: f64) -> f64 {
         let mut last = [0.0, self.start.unwrap_or(reached)];
         for knot in &self.knots {
-            if fraction < knot[0] {
-                let t = ((fraction - last[0]) / (knot[0] - last[0])).max(0.0);
-                return last[1] + t * (knot[1] - last[1]);
+            // An equilibrium path may go beyond both ends of the step.
+            let beyond = fraction > 1.0 && knot[0] == 1.0;
+            if fraction < knot[0] || beyond {
+                return last[1] + (fraction - last[0]) / (knot[0] - last[0]) * (knot[1] - last[1]);
             }
             last = *knot;
         }

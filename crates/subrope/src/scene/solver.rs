@@ -26,6 +26,9 @@ pub struct Solver {
     /// "off": never. "always": in every increment, refused
     /// where it is not possible.
     pub trust_region: TrustRegion,
+    /// Where equilibrium forks and the branch becomes unstable, "follow": go on along it; "switch": leave for the branch that forks
+    /// off. That needs a symmetric tangent (no `mu_t`, `mu_l`; `contact.friction = 0` or `contact.tangent = "symmetric"`).
+    pub branch: BranchChoice,
     /// Start each increment from the extrapolated last one.
     pub extrapolate: bool,
     /// Let large factors serve later iterations of an increment as the preconditioner of GMRES, where that costs less than
@@ -54,6 +57,7 @@ impl Default for Solver {
             max_iterations: 20,
             line_search: LineSearch::Auto,
             trust_region: TrustRegion::Auto,
+            branch: BranchChoice::Follow,
             extrapolate: true,
             keep_factors: true,
             growth: 1.5,
@@ -72,6 +76,16 @@ pub enum LineSearch {
     Auto,
     /// Never.
     Off,
+}
+
+/// What to do where equilibrium forks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BranchChoice {
+    /// Stay on the branch.
+    Follow,
+    /// Leave for the other.
+    Switch,
 }
 
 /// When to minimise the incremental potential.

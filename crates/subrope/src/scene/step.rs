@@ -18,7 +18,8 @@ pub struct Step {
     #[serde(default = "one_second")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
-    /// Increments: { fixed = 20 } or { initial = .., minimum = .., maximum = .., max_count = .. }.
+    /// Increments: { fixed = 20 } or { initial = .., minimum = .., maximum = .., max_count = ..,
+    /// control = .. }.
     #[serde(default)]
     pub increments: Increments,
     /// Bending: both ends turned against each other.
@@ -76,6 +77,23 @@ pub struct Increments {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000))]
     pub max_count: Option<usize>,
+    /// "load": loads and motions grow with the fraction of the step; "load" when left out. "arc_length": the fraction is an
+    /// unknown that may go back, past limit points and snap-back; `initial`, `minimum` and `maximum` are then lengths of an
+    /// arc in motions and dissipation, which is the fraction as long as the structure is as stiff as at first. Loads and motions must then grow
+    /// linearly from the start of the step to its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub control: Option<PathControl>,
+}
+
+/// What an increment goes on by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PathControl {
+    /// The fraction of the step.
+    #[default]
+    Load,
+    /// The length of an arc of the equilibrium path.
+    ArcLength,
 }
 
 /// How a step is divided, with defaults filled in.
@@ -96,6 +114,8 @@ pub enum Incrementation {
         maximum: f64,
         /// Largest number of increments.
         max_count: usize,
+        /// What they go on by.
+        control: PathControl,
     },
 }
 
@@ -113,6 +133,7 @@ impl Increments {
             minimum: self.minimum.unwrap_or(1e-6_f64.min(initial)),
             maximum: self.maximum.unwrap_or(0.1_f64.max(initial)),
             max_count: self.max_count.unwrap_or(1000),
+            control: self.control.unwrap_or_default(),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{Checker, top};
 use crate::document::Location;
 use crate::scene::program::{Program, given_loads};
 use crate::scene::step::{Increments, Step};
-use crate::scene::{Component, LoadTarget, MotionPath, MotionTarget, ProgramStep, Ramp};
+use crate::scene::{Component, LoadTarget, MotionPath, MotionTarget, PathControl, ProgramStep, Ramp, TrustRegion};
 
 /// Most entries of a program as written, each of some hundred bytes.
 const MOST_ENTRIES: usize = 2_000_000;
@@ -51,12 +51,16 @@ impl Checker<'_> {
     }
 
     fn increments(&mut self, at: &Location, increments: &Increments) {
-        let Increments { fixed, initial, minimum, maximum, max_count } = increments;
-        let others = [initial.is_some(), minimum.is_some(), maximum.is_some(), max_count.is_some()];
+        let Increments { fixed, initial, minimum, maximum, max_count, control } = increments;
+        let lengths = [initial.is_some(), minimum.is_some(), maximum.is_some()];
+        let others = [lengths.contains(&true), max_count.is_some(), control.is_some()];
         if fixed.is_some() && others.contains(&true) {
-            let help = "give { fixed = N }, or initial, minimum, maximum and max_count";
+            let help = "give { fixed = N }, or initial, minimum, maximum, max_count and control";
             self.inconsistent(&at.at("fixed"), "`fixed` excludes the keys of automatic increments", help);
             return;
+        }
+        if *control == Some(PathControl::ArcLength) {
+            self.arcs(&at.at("control"));
         }
         let ordered = [("minimum", minimum), ("initial", initial), ("maximum", maximum)];
         for (low, high) in [(0, 1), (1, 2), (0, 2)] {
@@ -68,6 +72,22 @@ impl Checker<'_> {
                 self.inconsistent(&at.at(low_key), cause, "required: minimum <= initial <= maximum");
                 return;
             }
+        }
+    }
+
+    /// What an equilibrium path cannot be followed with: time that goes back, states that are minima.
+    fn arcs(&mut self, at: &Location) {
+        let solver = &self.scene.solver;
+        if solver.stabilisation.is_some() {
+            let cause =
+                "`control` = \"arc_length\" follows equilibria, which `solver.stabilisation` disturbs".to_owned();
+            self.inconsistent(at, cause, "leave out one of them");
+        }
+        if solver.trust_region == TrustRegion::Always {
+            let cause = "`control` = \"arc_length\" follows unstable states too, `solver.trust_region` = \"always\" finds none of \
+                         them"
+                .to_owned();
+            self.inconsistent(at, cause, "leave out one of them");
         }
     }
 

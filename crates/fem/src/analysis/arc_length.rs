@@ -1,0 +1,349 @@
+//! Equilibrium paths on which the fraction of the step is an unknown: past limit points and snap-back.
+//!
+//! Motions and loads of a step are functions of its fraction `s`, so that `r(q, s) = 0` is a path. An increment of length `a`
+//! goes on along it until
+//!
+//! ```text
+//! sqrt((|dq|^2/U^2 + ds^2)/2) + dD/W = a,     U = |dq|/|ds|,  W = |work|/ds^2  of the first increment of the step,
+//! ```
+//!
+//! with `|q|^2` the sum over the unknowns, rotations times the lever of the model, and `dD` the dissipation of the increment. Where
+//! the structure is as stiff as at the start of the step and nothing slides, `a` is the fraction of the step; where it gives way
+//! motions count instead (Riks, Int. J. Solids Struct. 15 (1979) 529; Crisfield, Comput. Struct. 13 (1981) 55), and where all of it unloads
+//! but a few places, in which friction does its work, dissipation does (Gutiérrez, Commun. Numer. Meth. Eng. 20 (2004) 19).
+//!
+//! The first iterate continues the last increment, which also says where forwards is. Corrections solve for both right-hand
+//! sides with one factorisation,
+//!
+//! ```text
+//! K da = -r,   K db = -dr/ds,   dq = da + ds db,
+//! ```
+//!
+//! with `ds` from the linearised constraint. `dr/ds`, and `dD/ds` along `db`, are differences, with motions and loads a little
+//! further on: they hold for rotations, arcs and whatever else a path may be, and their error changes the rate of convergence
+//! by that little, not the result. The dissipation along `da`, which vanishes with the residual, is left out of the linearised constraint.
+//!
+//! Where a structure unloads from one increment to the next, as a brittle one does, motions turn back and the arc cannot tell that way from the
+//! one that it came. An increment that fails is tried again with
+//!
+//! ```text
+//! dD/W = a.
+//! ```
+//!
+//! An increment on which nothing slides after one with sliding is refused: it goes back elastically, not on.
+//!
+//! The first increment of a step has a given fraction. The last one is cut back to `s = 1` once the path is known to go beyond.
+
+use super::driver::Analysis;
+use super::newton::{Attempt, hopeless, relative_residual};
+use super::record::{IncrementRecord, Phase};
+use super::step::Step;
+use super::workspace::{Iterate, Workspace};
+use crate::contribution::Request;
+use crate::{Energies, FemError};
+
+/// Difference of fractions for derivatives, over the advance of the increment.
+const AHEAD: f64 = 1e-6;
+
+/// Part of the dissipation that the last increment leads one to expect, below which an increment that turns back is unloading.
+const UNLOADING: f64 = 0.1;
+
+/// What the length of an increment is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Motions, fraction and dissipation.
+    Arc,
+    /// Dissipation alone.
+    Dissipation,
+}
+
+/// What the arc length of a step is measured in, and the last increment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathScale {
+    /// `U` \[mm\]; zero before the first increment.
+    pub motion: f64,
+    /// `W` \[mJ\].
+    pub work: f64,
+    /// Change of the fraction over the last increment.
+    pub advance: f64,
+    /// Dissipation of the last increment \[mJ\].
+    pub dissipation: f64,
+}
+
+/// Derivatives along the path.
+pub struct Sweep {
+    /// `db`.
+    pub along: Vec<f64>,
+    /// `dD/ds` along it \[mJ\].
+    dissipation: f64,
+}
+
+impl Sweep {
+    /// For so many unknowns.
+    pub fn new(unknowns: usize) -> Self {
+        Self { along: vec![0.0; unknowns], dissipation: 0.0 }
+    }
+}
+
+impl Analysis {
+    /// Follows the path over an arc and says in the attempt where it ends.
+    pub(super) fn follow(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: &mut Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        if self.last_length == 0.0 {
+            return self.iterate(work, *attempt, record);
+        }
+        let start = *attempt;
+        let by_arc = self.follow_by(work, step, (attempt, record), Measure::Arc);
+        let suspect = match &by_arc {
+            Ok(()) => self.unloads(work, start, *attempt),
+            Err(error) => error.is_recoverable() && !matches!(error, FemError::SearchOutdated),
+        };
+        if !suspect || !self.dissipates(work) {
+            return by_arc.and_then(|()| self.settle_path(work, step, attempt, record));
+        }
+        *attempt = start;
+        let by_dissipation = self.follow_by(work, step, (attempt, record), Measure::Dissipation);
+        match (by_arc, by_dissipation) {
+            (_, Ok(())) => self.stretch(&work.base, attempt),
+            (Err(error), Err(_)) => return Err(error),
+            (Ok(()), Err(_)) => return Err(FemError::TurnsBack { fraction: attempt.to }),
+        }
+        self.settle_path(work, step, attempt, record)
+    }
+
+    /// Follows the path from where the last increment points to.
+    fn follow_by(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        (attempt, record): (&mut Attempt, &mut IncrementRecord),
+        measure: Measure,
+    ) -> Result<(), FemError> {
+        self.start_anew(work);
+        let ratio = attempt.length / self.last_length;
+        attempt.to = attempt.from + ratio * self.path.advance;
+        for ((q, committed), change) in work.base.q.iter_mut().zip(&self.q).zip(&self.last_change) {
+            *q = committed + ratio * change;
+        }
+        self.correct_along(work, step, (attempt, record), measure)
+    }
+
+    /// Refuses the way back, and ends at the end of the step.
+    fn settle_path(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: &mut Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        if self.turns_back(work, *attempt) {
+            return Err(FemError::TurnsBack { fraction: attempt.to });
+        }
+        if attempt.to > 1.0 { self.land(work, step, attempt, record) } else { Ok(()) }
+    }
+
+    /// Newton's method for coordinates and fraction together.
+    pub(super) fn correct_along(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        (attempt, record): (&mut Attempt, &mut IncrementRecord),
+        measure: Measure,
+    ) -> Result<(), FemError> {
+        let mut sweep = Sweep::new(work.rhs.len());
+        let (mut energy, mut largest_energy) = (0.0, 0.0_f64);
+        // Iterations and residuals before this round of multipliers.
+        let (mut spent, mut seen) = (record.iterations, record.residuals.len());
+        loop {
+            self.aim_at(work, step, *attempt);
+            self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+            if record.iterations > spent {
+                energy = self.slope(work).abs();
+            }
+            let relative = relative_residual(&work.base);
+            record.residuals.push(relative);
+            if self.is_converged(relative, energy, largest_energy) {
+                if !self.review()? {
+                    return Ok(());
+                }
+                self.totals.augmentations += 1;
+                self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+                (spent, seen) = (record.iterations, record.residuals.len());
+            }
+            if record.iterations >= spent + self.options.max_iterations || hopeless(&record.residuals[seen..], false) {
+                return Err(self.not_converged(work, record.iterations));
+            }
+            record.negative_pivots = self.correct(work)?;
+            record.iterations += 1;
+            self.sweep(work, step, *attempt, &mut sweep)?;
+            let change = self.go_along(work, *attempt, &sweep, measure)?;
+            attempt.to += change;
+            work.correction.iter_mut().zip(&sweep.along).for_each(|(a, b)| *a += change * b);
+            largest_energy = largest_energy.max(self.slope(work).abs());
+            self.equations()?.scatter_add(1.0, &work.correction, &mut work.base.q);
+        }
+    }
+
+    /// The path goes beyond the end of the step: the increment ends there.
+    fn land(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: &mut Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        let part = (1.0 - attempt.from) / (attempt.to - attempt.from);
+        (attempt.to, attempt.length) = (1.0, part * attempt.length);
+        self.model.contributions.iter_mut().for_each(|c| c.revert());
+        self.aim_at(work, step, *attempt);
+        for (q, committed) in work.base.q.iter_mut().zip(&self.q) {
+            *q = committed + part * (*q - committed);
+        }
+        work.target.impose(&mut work.base.q);
+        self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+        let spent = (record.iterations, record.residuals.len());
+        self.iterate_on(work, *attempt, record, spent)
+    }
+
+    /// Loads and motions at the end of an attempt, imposed on the base.
+    pub(super) fn aim_at(&self, work: &mut Workspace, step: &Step, attempt: Attempt) {
+        work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
+        work.target.impose(&mut work.base.q);
+    }
+
+    /// `db` and `dD/ds` at the base, whose tangent is factorised. Leaves the target a little ahead.
+    pub(super) fn sweep(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: Attempt,
+        sweep: &mut Sweep,
+    ) -> Result<(), FemError> {
+        let ahead = AHEAD * attempt.length;
+        let Workspace { base, trial, target, rhs, .. } = work;
+        target.fill(
+            step,
+            Attempt { to: attempt.to + ahead, ..attempt },
+            &self.step_start,
+            &self.released,
+            &self.before,
+        );
+        trial.q.copy_from_slice(&base.q);
+        target.impose(&mut trial.q);
+        self.evaluate(trial, target, None, Request::Residual)?;
+        for (b, &c) in rhs.iter_mut().zip(self.equations()?.coordinates()) {
+            *b = (base.residual[c as usize] - trial.residual[c as usize]) / ahead;
+        }
+        let system = self.system.as_mut().ok_or(FemError::NonFiniteResidual)?;
+        self.totals.linear_iterations +=
+            self.phases.measure(Phase::Solution, || system.solve(rhs, &mut sweep.along))?;
+        let dissipated = dissipation(&base.energies);
+        if dissipated > 0.0 && self.path.work > 0.0 {
+            self.equations()?.scatter_add(ahead, &sweep.along, &mut trial.q);
+            self.evaluate(trial, target, None, Request::Residual)?;
+            sweep.dissipation = (dissipation(&trial.energies) - dissipated) / ahead;
+        } else {
+            sweep.dissipation = 0.0;
+        }
+        Ok(())
+    }
+
+    /// Makes the length of an attempt that of the arc to an iterate.
+    pub(super) fn stretch(&self, iterate: &Iterate, attempt: &mut Attempt) {
+        attempt.length = self.elastic_arc(&self.moved(iterate), attempt.to - attempt.from)
+            + self.in_work(dissipation(&iterate.energies));
+    }
+
+    /// `sqrt((|dq|^2/U^2 + ds^2)/2)`.
+    fn elastic_arc(&self, moved: &[f64], advance: f64) -> f64 {
+        (0.5 * (self.path_product(moved, moved) + advance * advance)).sqrt()
+    }
+
+    /// The change of the fraction that brings the arc, linearised, to its length.
+    fn go_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep, measure: Measure) -> Result<f64, FemError> {
+        let dissipated = self.in_work(dissipation(&work.base.energies));
+        let (mut lacking, mut along) = (attempt.length - dissipated, self.in_work(sweep.dissipation));
+        if measure == Measure::Arc {
+            let (arc, by_residual, by_path) = self.motion_along(work, attempt, sweep)?;
+            lacking -= arc + by_residual;
+            along += by_path;
+        }
+        let change = lacking / along;
+        if change.is_finite() { Ok(change) } else { Err(FemError::NonFiniteResidual) }
+    }
+
+    /// The part of the arc that motions and fraction make, its change by the correction, and its derivative along the path.
+    fn motion_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep) -> Result<(f64, f64, f64), FemError> {
+        let moved = self.moved(&work.base);
+        let advance = attempt.to - attempt.from;
+        let elastic = self.elastic_arc(&moved, advance);
+        let mut direction = vec![0.0; self.q.len()];
+        let equations = self.equations()?;
+        equations.scatter_add(1.0, &work.correction, &mut direction);
+        let fixed = 0.5 * self.path_product(&moved, &direction) / elastic;
+        direction.fill(0.0);
+        equations.scatter_add(1.0, &sweep.along, &mut direction);
+        let along = 0.5 * (self.path_product(&moved, &direction) + advance) / elastic;
+        Ok((elastic, fixed, along))
+    }
+
+    /// Whether sliding of the iterate, or of the last increment, gives a measure.
+    fn dissipates(&self, work: &Workspace) -> bool {
+        self.path.work > 0.0 && dissipation(&work.base.energies).max(self.path.dissipation) > 0.0
+    }
+
+    /// Whether an increment dissipates far less than the last one leads one to expect.
+    fn unloads(&self, work: &Workspace, asked: Attempt, found: Attempt) -> bool {
+        let expected = asked.length / self.last_length * self.path.dissipation;
+        let forward = found.to <= 1.0;
+        forward && dissipation(&work.base.energies) < UNLOADING * expected
+    }
+
+    /// Whether an increment without sliding goes back on the way that the last one came.
+    fn turns_back(&self, work: &Workspace, attempt: Attempt) -> bool {
+        let advance = attempt.to - attempt.from;
+        let forward = self.path_product(&self.moved(&work.base), &self.last_change) + advance * self.path.advance;
+        let expected = attempt.length / self.last_length * self.path.dissipation;
+        forward < 0.0 && dissipation(&work.base.energies) <= UNLOADING * expected
+    }
+
+    fn moved(&self, iterate: &Iterate) -> Vec<f64> {
+        iterate.q.iter().zip(&self.q).map(|(new, old)| new - old).collect()
+    }
+
+    /// `a.b/U^2` over the unknowns.
+    fn path_product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let unit = self.path.motion * self.path.motion;
+        let free = (0..a.len()).filter(|&c| !self.prescribed[c]);
+        let weight = |c: usize| if self.is_rotation(c) { self.lever * self.lever } else { 1.0 };
+        free.map(|c| weight(c) * a[c] * b[c]).sum::<f64>() / unit
+    }
+
+    /// A dissipation over `W`.
+    fn in_work(&self, dissipation: f64) -> f64 {
+        if self.path.work > 0.0 { dissipation / self.path.work } else { 0.0 }
+    }
+
+    /// Notes an increment that is committed, and the scales of the step after its first.
+    pub(super) fn note_path(&mut self, attempt: Attempt, energies: &Energies, work: f64) {
+        let advance = attempt.to - attempt.from;
+        if self.path.motion == 0.0 {
+            self.path.motion = 1.0;
+            let length = self.path_product(&self.last_change, &self.last_change).sqrt();
+            self.path.motion = if length > 0.0 { length / advance.abs() } else { 1.0 };
+            self.path.work = work.abs() / (advance * advance);
+        }
+        self.path.advance = advance;
+        self.path.dissipation = dissipation(energies);
+    }
+}
+
+/// What an increment dissipates \[mJ\].
+fn dissipation(energies: &Energies) -> f64 {
+    energies.dissipated_mid.iter().sum::<f64>() + energies.contact_friction
+}

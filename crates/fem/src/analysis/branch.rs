@@ -1,0 +1,152 @@
+//! From a branch that has become unstable to the one that forks off it.
+//!
+//! Where equilibrium forks, the tangent has a null vector `phi` that loads and motions do no work on: the path goes on along `db =
+//! dq/ds` without it. At a limit point `db` turns into `phi` instead. So an increment with more negative pivots than the last has
+//! passed a fork if `db` and the mode of least stiffness are nearly perpendicular. The other branch leaves along the mode
+//! (Wagner and Wriggers, Eng. Comput. 5 (1988) 103): Newton's method from the state that has converged plus a multiple of it,
+//! small ones first, until it ends in a state that lies in that direction and has no more negative pivots. With a given
+//! fraction that is a state at the same loads, which exists where the branch rises from the fork; on a path with arc lengths it is one as far from the
+//! last increment as the multiple is, whether the branch rises or falls.
+
+use super::arc_length::{Measure, Sweep};
+use super::driver::Analysis;
+use super::mode::Metric;
+use super::newton::Attempt;
+use super::record::IncrementRecord;
+use super::step::{BranchChoice, Step};
+use super::workspace::Workspace;
+use crate::FemError;
+use crate::contribution::Request;
+
+/// Amplitudes that are tried, over the largest change of a coordinate in the increment.
+const AMPLITUDES: [f64; 6] = [0.25, 1.0, 4.0, 16.0, 64.0, 256.0];
+
+/// Cosine of the angle between path and mode below which a branch forks off.
+const FORK: f64 = 0.1;
+
+/// Part of the change of the increment by which another state differs at least.
+const STILL: f64 = 1e-3;
+
+/// Cosine of the angle between the mode and the way to a state above which it lies on the branch that forks off.
+const ASIDE: f64 = 0.3;
+
+/// What an increment has converged to, and where it may leave to.
+struct Fork {
+    q: Vec<f64>,
+    /// The mode, as coordinates, as large as the change of the increment.
+    mode: Vec<f64>,
+    negative_pivots: usize,
+}
+
+impl Analysis {
+    /// Leaves for the branch that forks off, if that is wanted and there is one.
+    pub(super) fn choose_branch(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: &mut Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        let before = self.totals.negative_pivots.unwrap_or(0);
+        let unstable = record.negative_pivots.is_some_and(|now| now > before);
+        if self.options.branch == BranchChoice::Follow || !unstable {
+            return Ok(());
+        }
+        let Some(fork) = self.fork(work, step, *attempt, before)? else { return Ok(()) };
+        for amplitude in AMPLITUDES.iter().flat_map(|a| [*a, -*a]) {
+            let (mut there, mut trial) = (*attempt, record.clone());
+            let found = self.leave(work, step, (&mut there, &mut trial), (&fork, amplitude));
+            record.iterations = trial.iterations;
+            match found {
+                Ok(()) if self.is_aside(work, &fork, trial.negative_pivots)? => {
+                    (*attempt, *record) = (there, trial);
+                    record.switched = true;
+                    return Ok(());
+                }
+                Err(error) if !error.is_recoverable() => return Err(error),
+                _ => {}
+            }
+        }
+        self.leave(work, step, (attempt, record), (&fork, 0.0))
+    }
+
+    /// Whether the base, with a tangent that has become unstable, is past a fork.
+    fn fork(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: Attempt,
+        before: usize,
+    ) -> Result<Option<Fork>, FemError> {
+        let Some(negative_pivots) = self.correct(work)?.filter(|now| *now > before) else { return Ok(None) };
+        let metric = self.metric_of_motion()?;
+        let (mut mode, mut buffer) = (work.correction.clone(), vec![0.0; work.rhs.len()]);
+        self.least_mode(&metric, &work.correction, &mut mode, &mut buffer)?;
+        let mut sweep = Sweep::new(work.rhs.len());
+        self.sweep(work, step, attempt, &mut sweep)?;
+        self.aim_at(work, step, attempt);
+        metric.weigh(&sweep.along, &mut buffer);
+        let common: f64 = buffer.iter().zip(&mode).map(|(a, b)| a * b).sum();
+        if common.abs() >= FORK * metric.length(&sweep.along) {
+            return Ok(None);
+        }
+        let q = work.base.q.clone();
+        let mut direction = vec![0.0; q.len()];
+        self.equations()?.scatter_add(1.0, &mode, &mut direction);
+        let moved: Vec<f64> = q.iter().zip(&self.q).map(|(new, old)| new - old).collect();
+        let scale = self.largest(&moved) / self.largest(&direction);
+        direction.iter_mut().for_each(|d| *d *= scale);
+        Ok(scale.is_normal().then_some(Fork { q, mode: direction, negative_pivots }))
+    }
+
+    /// Newton's method from beside the state that has converged.
+    fn leave(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        (attempt, record): (&mut Attempt, &mut IncrementRecord),
+        (fork, amplitude): (&Fork, f64),
+    ) -> Result<(), FemError> {
+        self.start_anew(work);
+        for ((q, found), mode) in work.base.q.iter_mut().zip(&fork.q).zip(&fork.mode) {
+            *q = found + amplitude * mode;
+        }
+        if step.increments.are_arcs() && self.last_length != 0.0 && attempt.to != 1.0 {
+            self.stretch(&work.base, attempt);
+            self.correct_along(work, step, (attempt, record), Measure::Arc)?;
+        } else {
+            self.aim_at(work, step, *attempt);
+            self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+            let spent = (record.iterations, record.residuals.len());
+            self.iterate_on(work, *attempt, record, spent)?;
+        }
+        record.negative_pivots = self.count_negative_pivots()?;
+        Ok(())
+    }
+
+    /// Whether the base lies on the branch that forks off.
+    fn is_aside(&self, work: &mut Workspace, fork: &Fork, pivots: Option<usize>) -> Result<bool, FemError> {
+        let system = self.system.as_ref().ok_or(FemError::NonFiniteResidual)?;
+        let metric = self.metric_of_motion()?;
+        let way: Vec<f64> = work.base.q.iter().zip(&fork.q).map(|(new, old)| new - old).collect();
+        system.equations().gather(&way, &mut work.correction);
+        system.equations().gather(&fork.mode, &mut work.rhs);
+        let lengths = metric.length(&work.correction) * metric.length(&work.rhs);
+        metric.weigh(&work.rhs.clone(), &mut work.rhs);
+        let common: f64 = work.rhs.iter().zip(&work.correction).map(|(a, b)| a * b).sum();
+        let moved = self.largest(&way) > STILL * self.largest(&fork.mode);
+        Ok(moved && common.abs() > ASIDE * lengths && pivots.is_some_and(|now| now <= fork.negative_pivots))
+    }
+
+    /// Motions, rotations times the lever \[mm\].
+    fn metric_of_motion(&self) -> Result<Metric, FemError> {
+        let weight = |c: &u32| if self.is_rotation(*c as usize) { self.lever * self.lever } else { 1.0 };
+        Ok(Metric { weights: self.equations()?.coordinates().iter().map(weight).collect() })
+    }
+
+    /// The largest coordinate, rotations times the lever \[mm\].
+    fn largest(&self, q: &[f64]) -> f64 {
+        let lever = |c: usize| if self.is_rotation(c) { self.lever } else { 1.0 };
+        q.iter().enumerate().fold(0.0, |most, (c, value)| most.max((lever(c) * value).abs()))
+    }
+}
