@@ -3,13 +3,12 @@
 
     python3 scripts/growth.py [--binary target/release/subrope] [--out out/growth] [--repeats 3] [FAMILY ...]
 
-Families: length (pitches), section (refinement of the section), strands (their number), cycles (of a helical slice), threads
-(gain of a second one, and whether the bits are the same), largest (one increment of a strand of --turns, two
-threads; only when asked for). Every
-member but the cycles is a pull of the
-rope of scenes/sub_rope_cycles.toml of at most eight iterations, on one thread unless said. Members run interleaved, and the least time of the
-repeats counts: what is above it is the machine's. An exponent is that of the cost between neighbours in the table,
-d log cost / d log unknowns.
+Families: length (pitches of a rope), turns (of one strand, without contact), section (refinement of the section), strands
+(their number), cycles (of a helical slice), threads (gain of a second one, and whether the bits are the same), largest (one
+increment of a strand of --turns, two threads; only when asked for). Every member but the cycles is two iterations of a pull, of
+the rope of scenes/sub_rope_cycles.toml or of the strand of scenes/strand_tension.toml, on one thread unless said. Members run
+interleaved, and the least time of the repeats counts: what is above it is the machine's. An exponent is that of the cost
+between neighbours in the table, d log cost / d log unknowns.
 """
 import argparse
 import json
@@ -20,33 +19,45 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "scenes" / "sub_rope_cycles.toml"
+# Every iteration factorises and evaluates once, so that its cost is the same in all sizes. Long ropes of strands that just touch
+# start badly, and iterates that go astray touch where they should not: the first two iterations tell what one costs.
+SOLVER = """
+[solver]
+keep_factors = false
+line_search = "off"
+max_iterations = 2
+"""
 PULL = """[[step]]
 name = "pull"
 increments = { fixed = 1 }
 [step.tension]
 elongation = 1e-5
-# Every iteration factorises and evaluates once, so that its cost is the same in all sizes. Long ropes of strands that just touch start badly: a few
-# iterations are enough to know their cost, converged or not.
-[solver]
-keep_factors = false
-line_search = "off"
-max_iterations = 8
-"""
+""" + SOLVER
 PITCH, LAYERS = 60.0, 40
 
 STRAND = ROOT / "scenes" / "strand_tension.toml"
 SLICE = ROOT / "scenes" / "sub_rope_slice_cycles.toml"
 CYCLES = (10, 100, 1000)
 
+LENGTHS = (1, 2, 4, 8, 16)
+
+
+def counted(n, one, more):
+    return f"{n} {one if n == 1 else more}"
+
+
 # What a member changes: keys of the scene.
 FAMILIES = {
-    "length": [(f"{n} pitches", {"length": n * PITCH, "layers": n * LAYERS}) for n in (1, 2, 4, 8, 16)],
+    "length": [(counted(n, "pitch", "pitches"), {"length": n * PITCH, "layers": n * LAYERS}) for n in LENGTHS],
+    "turns": [(counted(n, "turn", "turns"), {"turns": n}) for n in (4 * n for n in LENGTHS)],
     "section": [
         (f"{core} x {core} core, {rings} rings", {"core": core, "rings": rings, "layers": layers, "points": points})
         for core, rings, layers, points in ((2, 1, 30, "[8, 3]"), (2, 2, 40, "[8, 2]"), (4, 2, 50, "[4, 2]"), (4, 4, 80, "[4, 2]"))
     ],
     "strands": [(f"{n} strands", {"strands": n}) for n in (2, 3, 4, 5, 6)],
 }
+# Families along which cost should be linear.
+LINEAR = {"length": "pitch", "turns": "turn"}
 # Exit code of a run that ends before its last step.
 NOT_CONVERGED = 3
 PHASES = ("assembly", "factorisation", "solution")
@@ -65,6 +76,8 @@ def changed(text, changes, section=None):
 
 def scene(changes):
     """The scene with one short pull and other values of some keys."""
+    if "turns" in changes:
+        return strand(changes["turns"]) + SOLVER
     return changed(SCENE.read_text().split("[[step]]")[0], changes, "[rope]") + PULL
 
 
@@ -127,12 +140,22 @@ def family_table(args, family):
                  *(f"{cost[p]:.0f}" for p in PHASES), f"{cost['iteration']:.0f}", exponents[0],
                  f"{cost['memory']:.0f}", exponents[1]]
         print("| " + " | ".join(map(str, cells)) + " |", flush=True)
+    if family in LINEAR:
+        print_added(members, best, LINEAR[family])
     first, last = (next((n for n, _ in order if n in best), None) for order in (members, members[::-1]))
     if first != last:
         ratio = math.log(sizes[last]["unknowns"] / sizes[first]["unknowns"])
         overall = {k: math.log(best[last][k] / best[first][k]) / ratio for k in ("iteration", "memory")}
         print(f"\nFrom {first} to {last}: exponent {overall['iteration']:.2f} of the time of an iteration, "
               f"{overall['memory']:.2f} of the memory; least of {args.repeats} runs.")
+
+
+def print_added(members, best, unit):
+    """What each further unit of length costs, from one member to the next."""
+    known = [(int(name.split()[0]), best[name]["iteration"]) for name, _ in members if name in best]
+    added = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(known, known[1:])]
+    print(f"\nThe first {members[0][0]}: {known[0][1]:.0f} ms an iteration, each further {unit} "
+          + ", ".join(f"{value:.0f}" for value in added) + " ms from one member to the next.")
 
 
 def cycles_table(args):

@@ -7,7 +7,7 @@ use subrope_fem::Contribution;
 
 use crate::contact;
 use crate::model::RopeModel;
-use crate::scene::{BundleLaw, Field, Formulation, Law, Scene};
+use crate::scene::{BranchChoice, BundleLaw, Field, Formulation, Incrementation, Law, PathControl, Scene};
 
 /// What is in use, part by part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -148,8 +148,20 @@ fn solver(model: &RopeModel) -> PlanPart {
 
 fn increments(scene: &Scene) -> PlanPart {
     let steps = scene.step.len();
-    let uses = format!("{steps} {}, automatic increments", if steps == 1 { "step" } else { "steps" });
+    let resolved: Vec<_> = scene.step.iter().map(|s| s.increments.resolve()).collect();
+    let along = |i: &Incrementation| matches!(i, Incrementation::Automatic { control: PathControl::ArcLength, .. });
+    let fixed = |i: &Incrementation| matches!(i, Incrementation::Fixed { .. });
+    let kinds = [
+        ("fixed increments", resolved.iter().any(fixed)),
+        ("automatic increments", resolved.iter().any(|i| !fixed(i) && !along(i))),
+        ("increments along the path", resolved.iter().any(along)),
+    ];
+    let kinds: Vec<&str> = kinds.iter().filter(|kind| kind.1).map(|kind| kind.0).collect();
+    let uses = format!("{steps} {}, {}", if steps == 1 { "step" } else { "steps" }, kinds.join(" and "));
+    let follows = scene.solver.branch == BranchChoice::Follow;
     PlanPart::new("steps", uses)
+        .without_if(!resolved.iter().any(along), "arc length", "no increments.control = \"arc_length\"")
+        .without_if(follows, "search for branches", "solver.branch = \"follow\"")
         .without_if(scene.solver.stabilisation.is_none(), "artificial damping", "no [solver.stabilisation]")
         .without_if(!scene.solver.extrapolate, "extrapolated first iterate", "extrapolate = false")
         .without_if(scene.step.iter().all(|s| s.cycles.is_none()), "table of cycles", "no step has cycles")

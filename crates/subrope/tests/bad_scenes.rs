@@ -197,6 +197,15 @@ fn contradictions() {
         &["reversed bounds: `initial` = 0.3", "minimum <= initial <= maximum"],
     );
     expect("initial = 0.1, maximum = 0.2", "fixed = 4, maximum = 0.2", &["`fixed` excludes"]);
+    expect("initial = 0.1, maximum = 0.2", "fixed = 4, control = \"arc_length\"", &["`fixed` excludes"]);
+    for (solver, cause) in [
+        ("trust_region = \"always\"", "follows unstable states too"),
+        ("stabilisation = { viscosity = 1e-3 }", "follows equilibria, which `solver.stabilisation` disturbs"),
+    ] {
+        let step =
+            format!("[solver]\n{solver}\n[[step]]\nname = \"arcs\"\nincrements = {{ control = \"arc_length\" }}\n");
+        expect("[[step]]", &format!("{step}[[step]]"), &[cause, "leave out one of them", "bad.toml:"]);
+    }
     expect("tau_t = 0.05\n", "", &["[law] needs the key `tau_t`", "friction = false"]);
     expect("tau_t = 0.05", "tau_t = 0.05\nz_lock = -0.3", &["`z_lock` is not read with this `compaction`"]);
     expect("tau_t = 0.05", "tau_t = 0.05\ncompaction = \"power\"", &["needs the key `K_p`", "needs the key `m`"]);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use subrope::model::{ModelError, RopeModel};
 use subrope::plan::{Plan, PlanPart};
-use subrope::scene::{SceneFile, TrustRegion};
+use subrope::scene::{BranchChoice, PathControl, Ramp, SceneFile, TrustRegion};
 
 fn changed(scene: &str, change: impl Fn(&mut SceneFile)) -> SceneFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene);
@@ -63,6 +63,27 @@ fn minima_without_a_potential_are_refused() {
         assert!(matches!(refused, Err(ModelError::NoPotential)), "{scene}");
     }
     assert!(RopeModel::new(&changed("bent_strand_coarse.toml", always), Some(1)).is_ok());
+}
+
+/// Paths have no corners, and where they fork only a symmetric tangent tells.
+#[test]
+fn paths_that_cannot_be_followed_are_refused() {
+    let corner = changed("bent_strand_coarse.toml", |file| {
+        let step = &mut file.scene.step[0];
+        step.increments.control = Some(PathControl::ArcLength);
+        step.bend.as_mut().unwrap().angle = Ramp::Path(vec![[0.5, 20.0], [1.0, 0.0]]);
+    });
+    let refused = RopeModel::new(&corner, Some(1)).err().unwrap();
+    assert!(matches!(refused, ModelError::KnotOnArc { knot: 0.5, .. }), "{refused}");
+    let switch = |file: &mut SceneFile| file.scene.solver.branch = BranchChoice::Switch;
+    let refused = RopeModel::new(&changed("sub_rope_cycles.toml", switch), Some(1));
+    assert!(matches!(refused, Err(ModelError::NoPivots)));
+    let (plan, _) = plan("bent_strand_coarse.toml", |file| {
+        switch(file);
+        file.scene.step[0].increments.control = Some(PathControl::ArcLength);
+    });
+    assert_eq!(part(&plan, "steps").uses, "1 step, increments along the path");
+    assert!(!leaves_out(&plan, "steps", "arc length") && !leaves_out(&plan, "steps", "branches"), "{plan}");
 }
 
 #[test]

@@ -95,7 +95,7 @@ impl Analysis {
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
         if self.last_length == 0.0 {
-            return self.iterate(work, *attempt, record);
+            return self.set_out(work, step, attempt, record);
         }
         let start = *attempt;
         let by_arc = self.follow_by(work, step, (attempt, record), Measure::Arc);
@@ -106,14 +106,28 @@ impl Analysis {
         if !suspect || !self.dissipates(work) {
             return by_arc.and_then(|()| self.settle_path(work, step, attempt, record));
         }
+        let unloading = FemError::TurnsBack { fraction: attempt.to };
         *attempt = start;
-        let by_dissipation = self.follow_by(work, step, (attempt, record), Measure::Dissipation);
-        match (by_arc, by_dissipation) {
-            (_, Ok(())) => self.stretch(&work.base, attempt),
-            (Err(error), Err(_)) => return Err(error),
-            (Ok(()), Err(_)) => return Err(FemError::TurnsBack { fraction: attempt.to }),
+        match self.follow_by(work, step, (attempt, record), Measure::Dissipation) {
+            Ok(()) => self.stretch(&work.base, attempt),
+            Err(FemError::SearchOutdated) => return Err(FemError::SearchOutdated),
+            Err(_) => return Err(by_arc.err().unwrap_or(unloading)),
         }
         self.settle_path(work, step, attempt, record)
+    }
+
+    /// An increment to a given fraction: the first of a step, or after a minimum.
+    fn set_out(
+        &mut self,
+        work: &mut Workspace,
+        step: &Step,
+        attempt: &mut Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        attempt.to = (attempt.from + attempt.length).min(1.0);
+        attempt.length = attempt.to - attempt.from;
+        self.aim_at(work, step, *attempt);
+        self.iterate(work, *attempt, record)
     }
 
     /// Follows the path from where the last increment points to.
