@@ -17,6 +17,8 @@ use crate::{ContactError, ContactOptions, FrictionTangent, Method, Surface};
 
 /// How far from its edges a patch counts as near, in its coordinates: its neighbours become candidates too.
 const MARGIN: f64 = 0.3;
+/// Depth of the toe of a law that is softened, over the reach.
+const SOFT: f64 = 0.01;
 /// Candidates are dropped when so many times more are kept than are near.
 const STALE: usize = 4;
 
@@ -32,6 +34,8 @@ pub struct Contact {
     pub(crate) pairs: Pairs,
     tree: Tree,
     pub(crate) rounds: usize,
+    /// Toe of the trial, where the law is softened \[mm\].
+    softened: f64,
     pub(crate) fresh: bool,
     /// Whether the primary surface goes on beyond its edges in truth.
     confined: bool,
@@ -107,6 +111,7 @@ impl Contact {
             pairs: Pairs::default(),
             tree: Tree::default(),
             rounds: 0,
+            softened: 0.0,
             fresh: true,
             confined: false,
             buffers: Vec::new(),
@@ -431,8 +436,8 @@ impl Contribution for Contact {
         if self.options.friction == 0.0 {
             return 0.0;
         }
-        let options = &self.options;
-        self.points.iter_mut().map(|p| p.area * p.freeze(options)).sum()
+        let options = self.options_of_trial();
+        self.points.iter_mut().map(|p| p.area * p.freeze(&options)).sum()
     }
 
     fn is_intermittent(&self) -> bool {
@@ -528,12 +533,24 @@ impl Contribution for Contact {
         Ok(Verdict::Augmented)
     }
 
+    /// With a toe, which gets shallower. Multipliers hold what the law itself presses: an augmented Lagrangian stays as it is.
+    fn soften(&mut self, part: f64) -> bool {
+        let can = self.options.method == Method::Penalty;
+        self.softened = if can { part * SOFT * self.options.reach } else { 0.0 };
+        can
+    }
+
     fn as_any(&self) -> Option<&dyn std::any::Any> {
         Some(self)
     }
 }
 
 impl Contact {
+    /// The options, softened.
+    fn options_of_trial(&self) -> ContactOptions {
+        ContactOptions { toe: self.options.toe.max(self.softened), ..self.options }
+    }
+
     /// Notes the gaps at the start where they are negative.
     fn note_overlap(&mut self, displacement: &[f64]) {
         let primary = Posture { surface: &self.primary, positions: &self.positions, displacement };
@@ -558,6 +575,7 @@ impl Contact {
         let pairs = self.pairs.of(patch);
         let posture = |displacement| Posture { surface: &self.primary, positions: &self.positions, displacement };
         let (now, committed) = (posture(configuration.displacement), posture(configuration.committed));
+        let options = self.options_of_trial();
         let ramp = Ramp::new(self.options.ramp, configuration.time, configuration.time_increment);
         let nodal = self.secondary.gather(patch, &self.positions, configuration.displacement);
         let count = self.secondary.nodes(patch).len();
@@ -573,7 +591,7 @@ impl Contact {
                 (point.new.pressure, point.new.traction) = (0.0, Vector3::zeros());
                 continue;
             };
-            let (touch, e) = point.evaluate(&foot, &committed, &self.options, ramp, configuration.predicting);
+            let (touch, e) = point.evaluate(&foot, &committed, &options, ramp, configuration.predicting);
             energies.potential += point.area * e.potential;
             energies.contact_stored += point.area * e.stored;
             energies.contact_friction += point.area * e.friction;

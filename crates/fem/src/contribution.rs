@@ -183,6 +183,13 @@ pub trait Contribution: Send {
         Ok(Verdict::Accepted)
     }
 
+    /// Softens what sets in abruptly, by a part between 0 (as it is) and 1, until told otherwise; says whether there is anything
+    /// to soften. Where Newton's method finds no way it starts from a softened model.
+    fn soften(&mut self, part: f64) -> bool {
+        let _ = part;
+        false
+    }
+
     /// Whether an assembly leaves out most of its elements: the places of their entries are then found on first use.
     fn is_intermittent(&self) -> bool {
         false

@@ -133,6 +133,10 @@ impl Contribution for Repeated {
         self.inner.review()
     }
 
+    fn soften(&mut self, part: f64) -> bool {
+        self.inner.soften(part)
+    }
+
     fn is_intermittent(&self) -> bool {
         self.inner.is_intermittent()
     }

@@ -4,7 +4,7 @@
 //! goes on along it until
 //!
 //! ```text
-//! sqrt((|dq|^2/U^2 + ds^2)/2) + dD/W = a,     U = |dq|/|ds|,  W = |work|/ds^2  of the first increment of the step,
+//! sqrt((|dq|^2/U^2 + ds^2)/2) + dD/W = a,     U = |dq|/|ds|,  W = |sum dF dq|/(2 ds^2)  of the first increment,
 //! ```
 //!
 //! with `|q|^2` the sum over the unknowns, rotations times the lever of the model, and `dD` the dissipation of the increment. Where
@@ -24,13 +24,14 @@
 //! by that little, not the result. The dissipation along `da`, which vanishes with the residual, is left out of the linearised constraint.
 //!
 //! Where a structure unloads from one increment to the next, as a brittle one does, motions turn back and the arc cannot tell that way from the
-//! one that it came. An increment that fails is tried again with
+//! one that it came. An increment that fails, or on which far less slides than on the last (a tenth), is tried again with
 //!
 //! ```text
 //! dD/W = a.
 //! ```
 //!
-//! An increment on which nothing slides after one with sliding is refused: it goes back elastically, not on.
+//! If that fails too, an increment on which far less slides is refused: it most likely goes back elastically. Where nothing shorter can be
+//! tried it is taken, unless it turns back on the last one.
 //!
 //! The first increment of a step has a given fraction. The last one is cut back to `s = 1` once the path is known to go beyond.
 
@@ -45,7 +46,13 @@ use crate::{Energies, FemError};
 /// Difference of fractions for derivatives, over the advance of the increment.
 const AHEAD: f64 = 1e-6;
 
-/// Part of the dissipation that the last increment leads one to expect, below which an increment that turns back is unloading.
+/// Part of its length by which an increment may be longer or shorter.
+const ABOUT: f64 = 0.1;
+
+/// Least difference of fractions for derivatives: its own rounding is `1e-7` of it.
+const LEAST_AHEAD: f64 = 1e-9;
+
+/// Part of the dissipation that the last increment leads one to expect, below which an increment unloads.
 const UNLOADING: f64 = 0.1;
 
 /// What the length of an increment is.
@@ -110,10 +117,20 @@ impl Analysis {
         *attempt = start;
         match self.follow_by(work, step, (attempt, record), Measure::Dissipation) {
             Ok(()) => self.stretch(&work.base, attempt),
-            Err(FemError::SearchOutdated) => return Err(FemError::SearchOutdated),
+            Err(error) if !error.is_recoverable() || matches!(error, FemError::SearchOutdated) => return Err(error),
+            // Sliding has come to an end.
+            Err(_) if by_arc.is_ok() && start.last_resort => {
+                *attempt = start;
+                self.follow_by(work, step, (attempt, record), Measure::Arc)?;
+            }
             Err(_) => return Err(by_arc.err().unwrap_or(unloading)),
         }
         self.settle_path(work, step, attempt, record)
+    }
+
+    /// Whether the fraction of an attempt is an unknown.
+    pub(super) fn is_along(&self, step: &Step, attempt: Attempt) -> bool {
+        step.increments.are_arcs() && self.last_length != 0.0 && attempt.to != 1.0
     }
 
     /// An increment to a given fraction: the first of a step, or after a minimum.
@@ -181,7 +198,7 @@ impl Analysis {
             }
             let relative = relative_residual(&work.base);
             record.residuals.push(relative);
-            if self.is_converged(relative, energy, largest_energy) {
+            if self.is_converged(relative, energy, largest_energy) && self.is_as_long(work, *attempt, measure) {
                 if !self.review()? {
                     return Ok(());
                 }
@@ -201,6 +218,16 @@ impl Analysis {
             largest_energy = largest_energy.max(self.slope(work).abs());
             self.equations()?.scatter_add(1.0, &work.correction, &mut work.base.q);
         }
+    }
+
+    /// Whether the base is about as far along the path as it shall be.
+    fn is_as_long(&self, work: &Workspace, attempt: Attempt, measure: Measure) -> bool {
+        let dissipated = self.in_work(dissipation(&work.base.energies));
+        let motion = match measure {
+            Measure::Arc => self.elastic_arc(&self.moved(&work.base), attempt.to - attempt.from),
+            Measure::Dissipation => 0.0,
+        };
+        (attempt.length - dissipated - motion).abs() <= ABOUT * attempt.length
     }
 
     /// The path goes beyond the end of the step: the increment ends there.
@@ -238,15 +265,10 @@ impl Analysis {
         attempt: Attempt,
         sweep: &mut Sweep,
     ) -> Result<(), FemError> {
-        let ahead = AHEAD * attempt.length;
+        let there = attempt.to + (AHEAD * attempt.length).max(LEAST_AHEAD);
+        let ahead = there - attempt.to;
         let Workspace { base, trial, target, rhs, .. } = work;
-        target.fill(
-            step,
-            Attempt { to: attempt.to + ahead, ..attempt },
-            &self.step_start,
-            &self.released,
-            &self.before,
-        );
+        target.fill(step, Attempt { to: there, ..attempt }, &self.step_start, &self.released, &self.before);
         trial.q.copy_from_slice(&base.q);
         target.impose(&mut trial.q);
         self.evaluate(trial, target, None, Request::Residual)?;
@@ -314,11 +336,11 @@ impl Analysis {
     /// Whether an increment dissipates far less than the last one leads one to expect.
     fn unloads(&self, work: &Workspace, asked: Attempt, found: Attempt) -> bool {
         let expected = asked.length / self.last_length * self.path.dissipation;
-        let forward = found.to <= 1.0;
-        forward && dissipation(&work.base.energies) < UNLOADING * expected
+        // The end of a step cuts increments short.
+        found.to <= 1.0 && dissipation(&work.base.energies) < UNLOADING * expected
     }
 
-    /// Whether an increment without sliding goes back on the way that the last one came.
+    /// Whether an increment that unloads goes back on the way that the last one came.
     fn turns_back(&self, work: &Workspace, attempt: Attempt) -> bool {
         let advance = attempt.to - attempt.from;
         let forward = self.path_product(&self.moved(&work.base), &self.last_change) + advance * self.path.advance;
@@ -343,14 +365,15 @@ impl Analysis {
         if self.path.work > 0.0 { dissipation / self.path.work } else { 0.0 }
     }
 
-    /// Notes an increment that is committed, and the scales of the step after its first.
-    pub(super) fn note_path(&mut self, attempt: Attempt, energies: &Energies, work: f64) {
+    /// Notes an increment that is committed, and the scales of the step after its first; `second_order` is its work of changes of
+    /// forces over its length squared \[mJ\].
+    pub(super) fn note_path(&mut self, attempt: Attempt, energies: &Energies, second_order: f64) {
         let advance = attempt.to - attempt.from;
         if self.path.motion == 0.0 {
             self.path.motion = 1.0;
             let length = self.path_product(&self.last_change, &self.last_change).sqrt();
             self.path.motion = if length > 0.0 { length / advance.abs() } else { 1.0 };
-            self.path.work = work.abs() / (advance * advance);
+            self.path.work = 0.5 * second_order.abs();
         }
         self.path.advance = advance;
         self.path.dissipation = dissipation(energies);

@@ -44,6 +44,13 @@ pub struct Ledger {
     length: f64,
 }
 
+impl Ledger {
+    /// `sum dF dq` over the length squared \[mJ\].
+    pub fn curvature(&self) -> f64 {
+        self.curvature
+    }
+}
+
 impl Totals {
     /// Counts a converged increment on an unstable branch, and the change of inertia.
     pub(super) fn note_inertia(&mut self, record: &mut IncrementRecord) {

@@ -15,8 +15,8 @@ use super::newton::Attempt;
 use super::record::IncrementRecord;
 use super::step::{BranchChoice, Step};
 use super::workspace::Workspace;
-use crate::FemError;
 use crate::contribution::Request;
+use crate::{Energies, FemError};
 
 /// Amplitudes that are tried, over the largest change of a coordinate in the increment.
 const AMPLITUDES: [f64; 6] = [0.25, 1.0, 4.0, 16.0, 64.0, 256.0];
@@ -35,6 +35,7 @@ struct Fork {
     q: Vec<f64>,
     /// The mode, as coordinates, as large as the change of the increment.
     mode: Vec<f64>,
+    energies: Energies,
     negative_pivots: usize,
 }
 
@@ -47,23 +48,33 @@ impl Analysis {
         attempt: &mut Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
-        let before = self.totals.negative_pivots.unwrap_or(0);
-        let unstable = record.negative_pivots.is_some_and(|now| now > before);
-        if self.options.branch == BranchChoice::Follow || !unstable {
+        if self.options.branch == BranchChoice::Follow {
             return Ok(());
         }
-        let Some(fork) = self.fork(work, step, *attempt, before)? else { return Ok(()) };
+        if record.negative_pivots.is_none() {
+            record.negative_pivots = self.count_negative_pivots()?;
+        }
+        let before = self.totals.negative_pivots.unwrap_or(0);
+        if record.negative_pivots.is_none_or(|now| now <= before) {
+            return Ok(());
+        }
+        let Some(fork) = self.fork(work, step, *attempt, before)? else {
+            // What was looked at around the state that has converged is not to be committed.
+            return self.evaluate(&mut work.base, &work.target, None, Request::Tangent);
+        };
         for amplitude in AMPLITUDES.iter().flat_map(|a| [*a, -*a]) {
             let (mut there, mut trial) = (*attempt, record.clone());
             let found = self.leave(work, step, (&mut there, &mut trial), (&fork, amplitude));
             record.iterations = trial.iterations;
             match found {
-                Ok(()) if self.is_aside(work, &fork, trial.negative_pivots)? => {
+                Ok(()) if there.to <= 1.0 && self.is_aside(work, &fork, trial.negative_pivots)? => {
                     (*attempt, *record) = (there, trial);
                     record.switched = true;
                     return Ok(());
                 }
-                Err(error) if !error.is_recoverable() => return Err(error),
+                Err(error) if !error.is_recoverable() || matches!(error, FemError::SearchOutdated) => {
+                    return Err(error);
+                }
                 _ => {}
             }
         }
@@ -96,7 +107,8 @@ impl Analysis {
         let moved: Vec<f64> = q.iter().zip(&self.q).map(|(new, old)| new - old).collect();
         let scale = self.largest(&moved) / self.largest(&direction);
         direction.iter_mut().for_each(|d| *d *= scale);
-        Ok(scale.is_normal().then_some(Fork { q, mode: direction, negative_pivots }))
+        let energies = work.base.energies;
+        Ok(scale.is_normal().then_some(Fork { q, mode: direction, energies, negative_pivots }))
     }
 
     /// Newton's method from beside the state that has converged.
@@ -111,8 +123,11 @@ impl Analysis {
         for ((q, found), mode) in work.base.q.iter_mut().zip(&fork.q).zip(&fork.mode) {
             *q = found + amplitude * mode;
         }
-        if step.increments.are_arcs() && self.last_length != 0.0 && attempt.to != 1.0 {
-            self.stretch(&work.base, attempt);
+        if self.is_along(step, *attempt) {
+            if amplitude != 0.0 {
+                work.base.energies = fork.energies;
+                self.stretch(&work.base, attempt);
+            }
             self.correct_along(work, step, (attempt, record), Measure::Arc)?;
         } else {
             self.aim_at(work, step, *attempt);

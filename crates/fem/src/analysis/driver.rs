@@ -19,6 +19,9 @@ use crate::linear::SolverOptions;
 /// Attempts of Newton's method at one increment, each shorter than the last, before the potential is minimised instead.
 const NEWTON_ATTEMPTS: usize = 6;
 
+/// Attempt at an increment from which on a softened model may lead Newton's method; fixed increments have no other way.
+const SOFTENED_ATTEMPT: usize = 3;
+
 /// Nodes and what acts on them.
 pub struct Model {
     /// Nodes, reference points, ties.
@@ -279,9 +282,12 @@ impl Analysis {
             let to = division.next_end(&self.progress);
             let length = division.next_length(&self.progress);
             let mut record = self.record(step, to, attempt);
-            let last_resort = matches!(step.increments, Increments::Fixed(_));
-            let minimise = stalled.is_some() || self.always_minimises();
-            match self.attempt(step, Attempt { from, to, length, last_resort, minimise }, &mut record) {
+            let fixed = matches!(step.increments, Increments::Fixed(_));
+            let minimise = stalled.is_some() || self.always_minimises(step);
+            let may_soften = self.options.smoothing && (fixed || attempt >= SOFTENED_ATTEMPT);
+            let last_resort = fixed || (division.is_shortest(&self.progress) && self.has_only_the_path(step));
+            let tried = Attempt { from, to, length, last_resort, minimise, may_soften };
+            match self.attempt(step, tried, &mut record) {
                 Ok(done) => {
                     self.time = record.time;
                     division.advance(&mut self.progress, done.to, record.iterations);
@@ -293,8 +299,8 @@ impl Analysis {
                 Err(cause) => {
                     self.totals.cutbacks += 1;
                     observer.failed(&record, &cause);
-                    let tried = attempt >= NEWTON_ATTEMPTS && !step.increments.are_arcs();
-                    let last = tried || division.is_shortest(&self.progress);
+                    let enough = attempt >= NEWTON_ATTEMPTS && !step.increments.are_arcs();
+                    let last = enough || division.is_shortest(&self.progress);
                     if !minimise && last && self.may_minimise(step, &cause) {
                         division.leave_path(&mut self.progress);
                         stalled = Some(cause);
@@ -313,8 +319,15 @@ impl Analysis {
         Ok(())
     }
 
-    fn always_minimises(&self) -> bool {
-        self.options.trust_region == TrustRegion::Always && self.model.can_be_minimised()
+    /// Paths with arc lengths are followed whether they are stable or not.
+    fn always_minimises(&self, step: &Step) -> bool {
+        self.options.trust_region == TrustRegion::Always && !step.increments.are_arcs() && self.model.can_be_minimised()
+    }
+
+    /// Whether no minimum is looked for where a path with arc lengths ends.
+    fn has_only_the_path(&self, step: &Step) -> bool {
+        let minimum = self.options.trust_region == TrustRegion::Auto && self.model.can_be_minimised();
+        step.increments.are_arcs() && !minimum
     }
 
     /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer,
@@ -361,6 +374,7 @@ impl Analysis {
             inertia_change: None,
             minimised: false,
             switched: false,
+            smoothed: false,
             released: 0.0,
         }
     }

@@ -11,6 +11,7 @@ mod mode;
 mod newton;
 mod record;
 mod rigid;
+mod smoothing;
 mod state;
 mod step;
 mod trust_region;

@@ -21,6 +21,8 @@ pub struct Attempt {
     pub last_resort: bool,
     /// Whether to minimise the incremental potential.
     pub minimise: bool,
+    /// Whether Newton's method may try again on a softened model.
+    pub may_soften: bool,
 }
 
 /// Rounding of the residual, over the norm of all element forces, or of stiffness times displacement.
@@ -54,7 +56,6 @@ impl Analysis {
     ) -> Result<Attempt, FemError> {
         self.search(None)?;
         let mut work = std::mem::take(&mut self.work);
-        work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
         let mut outcome = self.find(&mut work, step, attempt, record);
         for _ in 0..SEARCHES {
             if !matches!(outcome, Err(FemError::SearchOutdated)) {
@@ -68,14 +69,16 @@ impl Analysis {
             record.end(attempt, self.time + step.duration * attempt.length);
             self.totals.note_inertia(record);
             let before = self.ledger(&work, attempt);
-            let external = self.commit(&mut work, attempt);
-            if step.increments.are_arcs() {
-                self.note_path(attempt, &work.base.energies, external);
+            // The way to a minimum, or to another branch at the same loads, is no direction to go on in.
+            let aside = attempt.minimise || (record.switched && !self.is_along(step, attempt));
+            self.commit(&mut work, attempt);
+            if step.increments.are_arcs() && !aside {
+                self.note_path(attempt, &work.base.energies, before.curvature());
             }
             self.totals.minimised += usize::from(attempt.minimise);
             self.totals.switched += usize::from(record.switched);
-            if attempt.minimise || (record.switched && !step.increments.are_arcs()) {
-                // The way to a minimum or to another branch is no direction to go on in.
+            self.totals.smoothed += usize::from(record.smoothed);
+            if aside {
                 self.last_length = 0.0;
             }
             self.settle_account(&before, record);
@@ -92,13 +95,17 @@ impl Analysis {
         mut attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<Attempt, FemError> {
-        record.minimised = attempt.minimise;
+        work.target.fill(step, attempt, &self.step_start, &self.released, &self.before);
+        (record.minimised, record.smoothed, record.switched) = (attempt.minimise, false, false);
         if attempt.minimise {
             self.minimise(work, attempt, record)?;
         } else if step.increments.are_arcs() {
             self.follow(work, step, &mut attempt, record)?;
-        } else {
-            self.iterate(work, attempt, record)?;
+        } else if let Err(cause) = self.iterate(work, attempt, record) {
+            if !self.may_soften(attempt, &cause) {
+                return Err(cause);
+            }
+            self.iterate_softened(work, attempt, record)?;
         }
         if !attempt.minimise {
             self.choose_branch(work, step, &mut attempt, record)?;
@@ -118,9 +125,10 @@ impl Analysis {
         attempt: Attempt,
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
+        let spent = (record.iterations, record.residuals.len());
         self.start_anew(work);
         self.first_iterate(work, attempt, record)?;
-        self.iterate_on(work, attempt, record, (0, 0))
+        self.iterate_on(work, attempt, record, spent)
     }
 
     /// Newton's method from the base, which is evaluated; `spent` and `seen` are the iterations and residuals before this
@@ -356,8 +364,8 @@ impl Analysis {
         self.model.kinematics.is_rotation(coordinate)
     }
 
-    /// The trial becomes the committed state; answers the work of the increment by the trapezoidal rule \[mJ\].
-    fn commit(&mut self, work: &mut Workspace, attempt: Attempt) -> f64 {
+    /// The trial becomes the committed state; the work of the increment by the trapezoidal rule.
+    fn commit(&mut self, work: &mut Workspace, attempt: Attempt) {
         let (new, target) = (&work.base, &work.target);
         let mut external = 0.0;
         for c in 0..self.q.len() {
@@ -403,7 +411,6 @@ impl Analysis {
             self.totals.dissipated[0] += transverse;
             self.totals.dissipated[1] += longitudinal;
         }
-        external
     }
 }
 

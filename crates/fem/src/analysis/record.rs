@@ -83,6 +83,8 @@ pub struct Totals {
     pub minimised: usize,
     /// Converged increments that left an unstable branch for one that forks off it.
     pub switched: usize,
+    /// Converged increments that Newton's method found by way of a softened model.
+    pub smoothed: usize,
     /// Converged increments with a snap: energy left, or came, that forces and dissipation do not account for.
     pub jumps: usize,
     /// Energy released in them; negative where states of higher energy were jumped to.
@@ -129,6 +131,8 @@ pub struct IncrementRecord {
     pub minimised: bool,
     /// Whether it left an unstable branch for one that forks off it.
     pub switched: bool,
+    /// Whether Newton's method went by way of a softened model.
+    pub smoothed: bool,
     /// Energy released by a snap in a converged increment \[mJ\]; zero where there was none, negative where the state has
     /// more energy than was put in.
     pub released: f64,

@@ -159,7 +159,7 @@ fn counts<const N: usize>(state: &dyn StateReader, name: &str) -> Result<[u64; N
 }
 
 impl Totals {
-    fn kept(&self) -> ([f64; 13], [u64; 13]) {
+    fn kept(&self) -> ([f64; 13], [u64; 14]) {
         // Taken apart, so that nothing that is added later can be forgotten.
         let Self {
             external_work,
@@ -183,6 +183,7 @@ impl Totals {
             inertia_changes,
             minimised,
             switched,
+            smoothed,
             jumps,
             released,
             open,
@@ -217,11 +218,12 @@ impl Totals {
             jumps,
             minimised,
             switched,
+            smoothed,
         ];
         (energies, counts.map(|n| n as u64))
     }
 
-    fn of_kept(energies: [f64; 13], counts: [u64; 13]) -> Self {
+    fn of_kept(energies: [f64; 13], counts: [u64; 14]) -> Self {
         let c = counts.map(|n| n as usize);
         Self {
             external_work: energies[0],
@@ -246,6 +248,7 @@ impl Totals {
             jumps: c[10],
             minimised: c[11],
             switched: c[12],
+            smoothed: c[13],
             open: energies[12],
             released: energies[11],
         }

@@ -145,7 +145,7 @@ pub enum TrustRegion {
     Auto,
     /// Never.
     Off,
-    /// In every increment: only stable states are found. Without a potential as never.
+    /// In every increment but those with arc lengths: only stable states are found. Without a potential as never.
     Always,
 }
 
@@ -170,6 +170,8 @@ pub struct NewtonOptions {
     pub max_iterations: usize,
     /// Whether corrections may be shortened.
     pub line_search: bool,
+    /// Whether a softened model may lead the way where increments fail again and again.
+    pub smoothing: bool,
     /// When the incremental potential is minimised instead.
     pub trust_region: TrustRegion,
     /// What becomes of an increment that has passed a fork of equilibrium.
@@ -195,6 +197,7 @@ impl Default for NewtonOptions {
             energy_tolerance: 1e-9,
             max_iterations: 25,
             line_search: true,
+            smoothing: true,
             trust_region: TrustRegion::Auto,
             branch: BranchChoice::Follow,
             extrapolate: true,

@@ -209,6 +209,7 @@ fn newton(scene: &Scene) -> NewtonOptions {
         energy_tolerance: solver.energy_tolerance,
         max_iterations: solver.max_iterations,
         line_search: solver.line_search == LineSearch::Auto,
+        smoothing: solver.smoothing == scene::Smoothing::Auto,
         trust_region: match solver.trust_region {
             scene::TrustRegion::Auto => TrustRegion::Auto,
             scene::TrustRegion::Off => TrustRegion::Off,

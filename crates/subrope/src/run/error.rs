@@ -89,7 +89,7 @@ impl RunError {
         match self {
             Self::Solver { cause, .. } => match cause.as_ref() {
                 FemError::IncrementTooShort { .. } => Some(
-                    "the structure may pass a limit point here: follow the path beyond it (increments.control = \"arc_length\"), allow smaller \
+                    "the structure may pass a limit point here: follow the path beyond it if you do not yet (increments.control = \"arc_length\"), allow smaller \
                      increments (increments.minimum), more iterations (solver.max_iterations), or damp the jump (solver.stabilisation); a section that yields \
                      without hardening wrinkles under pressure: rope-yarns whose friction grows with it (law.mu_t, \
                      law.mu_l) or that harden (law.H_t, law.X_t) stand; long strands that just touch start more easily \

@@ -296,7 +296,7 @@ impl Watch<'_> {
     fn tell_findings(&mut self, record: &IncrementRecord) {
         let at = format!("at {} s (increment {} of step {})", record.time, record.increment, record.step);
         if let Some((before, now)) = record.inertia_change {
-            let meaning = match now > before {
+            let meaning = match now > before && !record.switched {
                 true => "a limit or bifurcation point was passed, and the unstable branch is followed",
                 false => "a limit or bifurcation point was passed",
             };

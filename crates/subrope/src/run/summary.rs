@@ -215,6 +215,8 @@ pub struct CountSummary {
     pub minimised: usize,
     /// Converged increments that left an unstable branch for one that forks off it.
     pub switched: usize,
+    /// Converged increments that Newton's method found by way of softened contacts.
+    pub smoothed: usize,
 }
 
 /// What took how long.
@@ -426,6 +428,7 @@ fn counts(model: &RopeModel) -> CountSummary {
         jumps: t.jumps,
         minimised: t.minimised,
         switched: t.switched,
+        smoothed: t.smoothed,
     }
 }
 

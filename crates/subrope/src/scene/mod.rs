@@ -50,7 +50,7 @@ pub use prescription::{Arc, ArcTable, Component, Free, Prescription, Ramp};
 pub use program::{Load, LoadTarget, Motion, MotionPath, MotionTarget, Path, Program, ProgramStep};
 pub use rope::{Core, Rope, Symmetry, YarnSense, Yarns};
 pub use sizing::Sizing;
-pub use solver::{BranchChoice, LineSearch, Solver, Stabilisation, TrustRegion};
+pub use solver::{BranchChoice, LineSearch, Smoothing, Solver, Stabilisation, TrustRegion};
 pub use step::{
     Bend, BendAxis, BendEnds, CycleControl, Cycles, Distribution, Incrementation, Increments, NodalForce, PathControl,
     PointForce, Prescribe, Step, Tension, Traction, Waveform,

@@ -20,6 +20,9 @@ pub struct Solver {
     /// "auto": a line search when a full correction does not improve; on the energy where there is one. "off": full
     /// corrections always.
     pub line_search: LineSearch,
+    /// "auto": where an increment fails for the third time, or a fixed one does, contacts are softened and Newton's method
+    /// goes on from the state found with less and less of that, to none. "off": never. Not with an augmented Lagrangian.
+    pub smoothing: Smoothing,
     /// Minimisation of the incremental potential within a trust region, which ends in a stable state; possible without
     /// friction that grows with pressure (`mu_t`, `mu_l`) and with `contact.friction = 0` or `contact.tangent =
     /// "symmetric"`. "auto": where Newton's method fails again and again, or at the shortest of automatic increments.
@@ -56,6 +59,7 @@ impl Default for Solver {
             energy_tolerance: 1e-10,
             max_iterations: 20,
             line_search: LineSearch::Auto,
+            smoothing: Smoothing::Auto,
             trust_region: TrustRegion::Auto,
             branch: BranchChoice::Follow,
             extrapolate: true,
@@ -86,6 +90,16 @@ pub enum BranchChoice {
     Follow,
     /// Leave for the other.
     Switch,
+}
+
+/// When to go by way of softened contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Smoothing {
+    /// Where increments fail again and again.
+    Auto,
+    /// Never.
+    Off,
 }
 
 /// When to minimise the incremental potential.

@@ -78,9 +78,9 @@ pub struct Increments {
     #[schemars(range(min = 1, max = 1_000_000))]
     pub max_count: Option<usize>,
     /// "load": loads and motions grow with the fraction of the step; "load" when left out. "arc_length": the fraction is an
-    /// unknown that may go back, past limit points and snap-back; `initial`, `minimum` and `maximum` are then lengths of an
-    /// arc in motions and dissipation, which is the fraction as long as the structure is as stiff as at first. Loads and motions must then grow
-    /// linearly from the start of the step to its end.
+    /// unknown that may go back, past limit points and snap-back; `minimum` and `maximum` are then lengths of an arc in
+    /// motions and dissipation, which is the fraction as long as the structure is as stiff as at first; `initial` is still the
+    /// fraction of the first increment. Loads and motions must grow linearly from the start of the step to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub control: Option<PathControl>,
 }

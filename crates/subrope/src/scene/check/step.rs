@@ -17,7 +17,7 @@ impl Checker<'_> {
         self.unique("step", &scene.step.iter().map(|s| s.name.as_str()).collect::<Vec<_>>());
         for (index, step) in scene.step.iter().enumerate() {
             let at = top("step").at(index);
-            self.increments(&at.at("increments"), &step.increments);
+            self.increments(&at.at("increments"), &step.increments, index == 0);
             self.motions(&at, step);
             self.loads(&at, step);
         }
@@ -50,7 +50,7 @@ impl Checker<'_> {
         entries <= MOST_ENTRIES
     }
 
-    fn increments(&mut self, at: &Location, increments: &Increments) {
+    fn increments(&mut self, at: &Location, increments: &Increments, first: bool) {
         let Increments { fixed, initial, minimum, maximum, max_count, control } = increments;
         let lengths = [initial.is_some(), minimum.is_some(), maximum.is_some()];
         let others = [lengths.contains(&true), max_count.is_some(), control.is_some()];
@@ -60,7 +60,7 @@ impl Checker<'_> {
             return;
         }
         if *control == Some(PathControl::ArcLength) {
-            self.arcs(&at.at("control"));
+            self.arcs(&at.at("control"), first);
         }
         let ordered = [("minimum", minimum), ("initial", initial), ("maximum", maximum)];
         for (low, high) in [(0, 1), (1, 2), (0, 2)] {
@@ -75,13 +75,19 @@ impl Checker<'_> {
         }
     }
 
-    /// What an equilibrium path cannot be followed with: time that goes back, states that are minima.
-    fn arcs(&mut self, at: &Location) {
-        let solver = &self.scene.solver;
+    /// What an equilibrium path cannot be followed with: forces that hang on time, states that are minima.
+    fn arcs(&mut self, at: &Location, first: bool) {
+        let (scene, solver) = (self.scene, &self.scene.solver);
         if solver.stabilisation.is_some() {
             let cause =
                 "`control` = \"arc_length\" follows equilibria, which `solver.stabilisation` disturbs".to_owned();
             self.inconsistent(at, cause, "leave out one of them");
+        }
+        let ramp = scene.contact.iter().any(|c| c.ramp.is_some()) || scene.rope.as_ref().is_some_and(|r| r.gap < 0.0);
+        if ramp && first {
+            let cause = "surfaces that overlap at the start are pressed apart over the time of the first step, which with \
+                         `control` = \"arc_length\" is the length of a path";
+            self.inconsistent(at, cause, "press them apart in a short step of its own before");
         }
         if solver.trust_region == TrustRegion::Always {
             let cause = "`control` = \"arc_length\" follows unstable states too, `solver.trust_region` = \"always\" finds none of \
