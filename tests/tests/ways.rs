@@ -4,8 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use nalgebra::{Matrix3, Vector3};
-use subrope_fem::FemError;
-use subrope_fem::analysis::{IncrementRecord, Increments, NewtonOptions, PathControl, TrustRegion};
+use subrope_fem::analysis::{IncrementRecord, Increments, Model, NewtonOptions, PathControl, TrustRegion};
+use subrope_fem::kinematics::Kinematics;
+use subrope_fem::{
+    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter,
+};
 use subrope_geometry::CellKind;
 use subrope_material::{EngineeringConstants, StVenantKirchhoff};
 use subrope_tests::truss::{APEX_DOWN, HEIGHT, TOP, Truss, apex_force, column, limit_force, push, von_mises};
@@ -95,6 +98,85 @@ fn a_stalled_run_goes_on_by_a_minimisation() -> Result<(), FemError> {
     assert!(jump.is_some());
     let w = -truss.analysis.coordinates()[APEX_DOWN as usize];
     assert!((apex_force(w) / (2.1 * limit_force()) - 1.0).abs() < 1e-9);
+    Ok(())
+}
+
+/// A bar along z of force `atan(u + 3) - atan 3`, and a spring beside it as long as it is softened.
+struct Flat {
+    nodes: [u32; 3],
+    spring: f64,
+}
+
+impl Contribution for Flat {
+    fn element_count(&self) -> usize {
+        1
+    }
+
+    fn element_nodes(&self, _: usize) -> &[u32] {
+        &self.nodes
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn has_potential(&self) -> bool {
+        false
+    }
+
+    fn assemble(
+        &mut self,
+        at: &Configuration<'_>,
+        request: Request,
+        sink: &mut dyn Sink,
+    ) -> Result<Energies, FemError> {
+        let u = at.displacement[5] - at.displacement[2];
+        let force = (u + 3.0).atan() - 3.0_f64.atan() + self.spring * u;
+        let stiffness = 1.0 / (1.0 + (u + 3.0) * (u + 3.0)) + self.spring;
+        let mut forces = [0.0; 9];
+        (forces[6], forces[7]) = (-force, force);
+        let mut matrix = [0.0; 81];
+        (matrix[60], matrix[61], matrix[69], matrix[70]) = (stiffness, -stiffness, -stiffness, stiffness);
+        sink.add(0, &forces, (request == Request::Tangent).then_some(&matrix));
+        Ok(Energies::default())
+    }
+
+    fn commit(&mut self) {}
+
+    fn soften(&mut self, part: f64) -> bool {
+        self.spring = part;
+        true
+    }
+
+    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
+        Ok(())
+    }
+
+    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
+        Ok(())
+    }
+}
+
+/// Newton's method without a line search overshoots farther and farther; by way of a softened bar it ends where the bar as it is
+/// carries the load.
+#[test]
+fn softening_leads_the_way_and_vanishes() -> Result<(), FemError> {
+    // The third node holds the body against turning about the bar.
+    let points = vec![Vector3::zeros(), Vector3::new(0.0, 0.0, 10.0), Vector3::x()];
+    for smoothing in [false, true] {
+        let flat = Flat { nodes: [0, 1, 2], spring: 0.0 };
+        let model =
+            Model { kinematics: Kinematics::new(points.clone(), Vec::new())?, contributions: vec![Box::new(flat)] };
+        let options = NewtonOptions { smoothing, line_search: false, ..options(TrustRegion::Off) };
+        let mut bar = Truss::of(model, &[5], options);
+        let step = push(bar.step(Increments::Fixed(1)), 5, -3.0_f64.atan());
+        let (states, outcome) = bar.run_while_possible(&step);
+        assert_eq!(outcome.is_ok(), smoothing, "{outcome:?}");
+        for state in states {
+            assert!(state.record.smoothed && (state.q[5] + 3.0).abs() < 1e-9, "{}", state.q[5]);
+        }
+        assert_eq!(bar.analysis.totals().smoothed, usize::from(smoothing));
+    }
     Ok(())
 }
 

@@ -19,9 +19,6 @@ use crate::linear::SolverOptions;
 /// Attempts of Newton's method at one increment, each shorter than the last, before the potential is minimised instead.
 const NEWTON_ATTEMPTS: usize = 6;
 
-/// Attempt at an increment from which on a softened model may lead Newton's method; fixed increments have no other way.
-const SOFTENED_ATTEMPT: usize = 3;
-
 /// Nodes and what acts on them.
 pub struct Model {
     /// Nodes, reference points, ties.
@@ -284,8 +281,9 @@ impl Analysis {
             let mut record = self.record(step, to, attempt);
             let fixed = matches!(step.increments, Increments::Fixed(_));
             let minimise = stalled.is_some() || self.always_minimises(step);
-            let may_soften = self.options.smoothing && (fixed || attempt >= SOFTENED_ATTEMPT);
-            let last_resort = fixed || (division.is_shortest(&self.progress) && self.has_only_the_path(step));
+            let shortest = fixed || division.is_shortest(&self.progress);
+            let may_soften = self.options.smoothing && shortest;
+            let last_resort = fixed || (shortest && self.has_only_the_path(step));
             let tried = Attempt { from, to, length, last_resort, minimise, may_soften };
             match self.attempt(step, tried, &mut record) {
                 Ok(done) => {

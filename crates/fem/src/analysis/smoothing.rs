@@ -21,7 +21,8 @@ const ROUGH: f64 = 1e-4;
 impl Analysis {
     /// Whether Newton's method may try again on a softened model.
     pub(super) fn may_soften(&mut self, attempt: Attempt, cause: &FemError) -> bool {
-        attempt.may_soften && matches!(cause, FemError::NotConverged { .. }) && self.soften(0.0)
+        let lost = cause.is_recoverable() && !matches!(cause, FemError::SearchOutdated);
+        attempt.may_soften && lost && self.soften(0.0)
     }
 
     /// Newton's method with less and less softening.

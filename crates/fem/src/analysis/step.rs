@@ -170,7 +170,7 @@ pub struct NewtonOptions {
     pub max_iterations: usize,
     /// Whether corrections may be shortened.
     pub line_search: bool,
-    /// Whether a softened model may lead the way where increments fail again and again.
+    /// Whether a softened model may lead the way where an increment fails and no shorter one can be tried.
     pub smoothing: bool,
     /// When the incremental potential is minimised instead.
     pub trust_region: TrustRegion,

@@ -20,8 +20,8 @@ pub struct Solver {
     /// "auto": a line search when a full correction does not improve; on the energy where there is one. "off": full
     /// corrections always.
     pub line_search: LineSearch,
-    /// "auto": where an increment fails for the third time, or a fixed one does, contacts are softened and Newton's method
-    /// goes on from the state found with less and less of that, to none. "off": never. Not with an augmented Lagrangian.
+    /// "auto": where an increment fails and no shorter one can be tried (`fixed`, `minimum`), contacts are softened and Newton's
+    /// method goes on from the state found with less and less of that, to none. "off": never. Not with an augmented Lagrangian.
     pub smoothing: Smoothing,
     /// Minimisation of the incremental potential within a trust region, which ends in a stable state; possible without
     /// friction that grows with pressure (`mu_t`, `mu_l`) and with `contact.friction = 0` or `contact.tangent =
@@ -96,7 +96,7 @@ pub enum BranchChoice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
-    /// Where increments fail again and again.
+    /// Where nothing shorter can be tried.
     Auto,
     /// Never.
     Off,
