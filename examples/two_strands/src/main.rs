@@ -61,7 +61,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let end = |name: &str, z| EndSection::rigid(name, Axis::default().position(0.0, 0.0, z), &mesh.node_sets[name]);
     let sections = vec![end("END_A", -0.5 * LENGTH), end("END_B", 0.5 * LENGTH)];
     let kinematics = Kinematics::new(mesh.points.clone(), sections)?;
-    let increments = Increments::Automatic { control: PathControl::Load, initial: 0.05, minimum: 1e-5, maximum: 0.2, max_count: 500 };
+    let increments = Increments::Automatic {
+        control: PathControl::Load,
+        initial: 0.05,
+        minimum: 1e-5,
+        maximum: 0.2,
+        max_count: 500,
+    };
     let (low, high) = (&kinematics.points()[0], &kinematics.points()[1]);
     let pull = Step::new("pull", increments).hold(low).hold(high).prescribe(high.first + 2, 0.01 * LENGTH);
 
