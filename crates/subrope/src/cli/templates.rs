@@ -24,13 +24,14 @@ macro_rules! templates {
 }
 
 /// All of them.
-pub(super) static TEMPLATES: [Template; 16] = templates! {
+pub(super) static TEMPLATES: [Template; 17] = templates! {
     "bent_strand_coarse": "a coarse strand bent by 45 degrees: the first minute",
     "bent_strand": "a strand bent to a half circle, with friction between rope-yarns",
     "bent_strand_elastic": "the same without friction",
     "rope_yarn_tension": "one rope-yarn in tension: identification of the moduli along the yarns",
     "strand_tension": "a strand in tension, its ends kept from turning",
     "tension_twist": "a strand pulled, then twisted to and fro",
+    "buckled_strand": "a strand buckled to one side and pushed through to the other, along its equilibrium path",
     "sub_rope_tension": "three strands laid together, in contact, stretched by 5 %",
     "sub_rope_free_twist": "the same with one end free to turn: how far a rope unlays",
     "sub_rope_cycles": "the same, then twenty cycles of tension: bedding-in, cycle by cycle",
