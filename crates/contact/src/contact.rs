@@ -118,8 +118,8 @@ impl Contact {
         })
     }
 
-    /// The same for a primary surface that goes on beyond its edges in truth, as the images of a strand do: a point that
-    /// comes near a patch at an edge is an error then, and not a contact lost.
+    /// The same for a primary surface that goes on beyond its edges in truth, as the images of a strand do: a point
+    /// that comes near a patch at an edge is an error then, and not a contact lost.
     #[must_use]
     pub fn confined(self) -> Self {
         Self { confined: true, ..self }
@@ -168,8 +168,9 @@ impl Contact {
             .map(move |(i, p)| combine(&p.own, &self.secondary.gather(i / per_patch, &self.positions, displacement)))
     }
 
-    /// Feet and gaps \[mm\] of all integration points at nodal displacements, patch by patch; [`None`] where the primary
-    /// surface is out of reach. Gaps are those of the surfaces themselves: an overlap at the start is not taken off.
+    /// Feet and gaps \[mm\] of all integration points at nodal displacements, patch by patch; [`None`] where the
+    /// primary surface is out of reach. Gaps are those of the surfaces themselves: an overlap at the start is not
+    /// taken off.
     pub fn gaps<'a>(&'a self, displacement: &'a [f64]) -> impl Iterator<Item = Option<(Place, f64)>> + 'a {
         let primary = Posture { surface: &self.primary, positions: &self.positions, displacement };
         self.points.iter().zip(self.places(displacement)).map(move |(point, x)| {
@@ -203,8 +204,8 @@ impl Contact {
         self.points.iter().fold(0.0, |most, p| most.max(-p.overlap))
     }
 
-    /// Feet of all points near the primary surface at some displacements; sets their hints. Answers secondary patch, foot
-    /// and gap; an error beyond the edge of a surface that goes on there.
+    /// Feet of all points near the primary surface at some displacements; sets their hints. Answers secondary patch,
+    /// foot and gap; an error beyond the edge of a surface that goes on there.
     fn feet(&mut self, displacement: &[f64]) -> Result<Vec<(u32, Place, f64)>, FemError> {
         let primary = Posture { surface: &self.primary, positions: &self.positions, displacement };
         let secondary = Posture { surface: &self.secondary, positions: &self.positions, displacement };
@@ -533,7 +534,8 @@ impl Contribution for Contact {
         Ok(Verdict::Augmented)
     }
 
-    /// With a toe, which gets shallower. Multipliers hold what the law itself presses: an augmented Lagrangian stays as it is.
+    /// With a toe, which gets shallower. Multipliers hold what the law itself presses: an augmented Lagrangian stays
+    /// as it is.
     fn soften(&mut self, part: f64) -> bool {
         let can = self.options.method == Method::Penalty;
         self.softened = if can { part * SOFT * self.options.reach } else { 0.0 };

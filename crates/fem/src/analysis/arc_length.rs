@@ -1,39 +1,43 @@
 //! Equilibrium paths on which the fraction of the step is an unknown: past limit points and snap-back.
 //!
-//! Motions and loads of a step are functions of its fraction `s`, so that `r(q, s) = 0` is a path. An increment of length `a`
-//! goes on along it until
+//! Motions and loads of a step are functions of its fraction `s`, so that `r(q, s) = 0` is a path. An increment of
+//! length `a` goes on along it until
 //!
 //! ```text
 //! sqrt((|dq|^2/U^2 + ds^2)/2) + dD/W = a,     U = |dq|/|ds|,  W = |sum dF dq|/(2 ds^2)  of the first increment,
 //! ```
 //!
-//! with `|q|^2` the sum over the unknowns, rotations times the lever of the model, and `dD` the dissipation of the increment. Where
-//! the structure is as stiff as at the start of the step and nothing slides, `a` is the fraction of the step; where it gives way
-//! motions count instead (Riks, Int. J. Solids Struct. 15 (1979) 529; Crisfield, Comput. Struct. 13 (1981) 55), and where all of it unloads
-//! but a few places, in which friction does its work, dissipation does (Gutiérrez, Commun. Numer. Meth. Eng. 20 (2004) 19).
+//! with `|q|^2` the sum over the unknowns, rotations times the lever of the model, and `dD` the dissipation of the
+//! increment. Where the structure is as stiff as at the start of the step and nothing slides, `a` is the fraction of
+//! the step; where it gives way motions count instead (Riks, Int. J. Solids Struct. 15 (1979) 529; Crisfield, Comput.
+//! Struct. 13 (1981) 55), and where all of it unloads but a few places, in which friction does its work, dissipation
+//! does (Gutiérrez, Commun. Numer. Meth. Eng. 20 (2004) 19).
 //!
-//! The first iterate continues the last increment, which also says where forwards is. Corrections solve for both right-hand
-//! sides with one factorisation,
+//! The first iterate continues the last increment, which also says where forwards is. Corrections solve for both
+//! right-hand sides with one factorisation,
 //!
 //! ```text
 //! K da = -r,   K db = -dr/ds,   dq = da + ds db,
 //! ```
 //!
-//! with `ds` from the linearised constraint. `dr/ds`, and `dD/ds` along `db`, are differences, with motions and loads a little
-//! further on: they hold for rotations, arcs and whatever else a path may be, and their error changes the rate of convergence
-//! by that little, not the result. The dissipation along `da`, which vanishes with the residual, is left out of the linearised constraint.
+//! with `ds` from the linearised constraint. `dr/ds`, and `dD/ds` along `db`, are differences, with motions and loads
+//! a little further on: they hold for rotations, arcs and whatever else a path may be, and their error changes the
+//! rate of convergence by that little, not the result. The dissipation along `da`, which vanishes with the residual,
+//! is left out of the linearised constraint.
 //!
-//! Where a structure unloads from one increment to the next, as a brittle one does, motions turn back and the arc cannot tell that way from the
-//! one that it came. An increment that fails, or on which far less slides than on the last (a tenth), is tried again with
+//! Where a structure unloads from one increment to the next, as a brittle one does, motions turn back and the arc
+//! cannot tell that way from the one that it came. An increment that fails, or on which far less slides than on the
+//! last (a tenth), is tried again with
 //!
 //! ```text
 //! dD/W = a.
 //! ```
 //!
-//! If that fails too, an increment on which far less slides is refused: it most likely goes back elastically. Where nothing shorter can be
-//! tried it is taken, unless it turns back on the last one.
+//! If that fails too, an increment on which far less slides is refused: it most likely goes back elastically. Where
+//! nothing shorter can be tried it is taken, unless it turns back on the last one.
 //!
-//! The first increment of a step has a given fraction. The last one is cut back to `s = 1` once the path is known to go beyond.
+//! The first increment of a step has a given fraction. The last one is cut back to `s = 1` once the path is known to
+//! go beyond.
 
 use super::driver::Analysis;
 use super::newton::{Attempt, hopeless, relative_residual};
@@ -313,7 +317,8 @@ impl Analysis {
         if change.is_finite() { Ok(change) } else { Err(FemError::NonFiniteResidual) }
     }
 
-    /// The part of the arc that motions and fraction make, its change by the correction, and its derivative along the path.
+    /// The part of the arc that motions and fraction make, its change by the correction, and its derivative along the
+    /// path.
     fn motion_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep) -> Result<(f64, f64, f64), FemError> {
         let moved = self.moved(&work.base);
         let advance = attempt.to - attempt.from;
@@ -365,8 +370,8 @@ impl Analysis {
         if self.path.work > 0.0 { dissipation / self.path.work } else { 0.0 }
     }
 
-    /// Notes an increment that is committed, and the scales of the step after its first; `second_order` is its work of changes of
-    /// forces over its length squared \[mJ\].
+    /// Notes an increment that is committed, and the scales of the step after its first; `second_order` is its work
+    /// of changes of forces over its length squared \[mJ\].
     pub(super) fn note_path(&mut self, attempt: Attempt, energies: &Energies, second_order: f64) {
         let advance = attempt.to - attempt.from;
         if self.path.motion == 0.0 {

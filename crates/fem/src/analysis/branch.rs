@@ -1,12 +1,13 @@
 //! From a branch that has become unstable to the one that forks off it.
 //!
-//! Where equilibrium forks, the tangent has a null vector `phi` that loads and motions do no work on: the path goes on along `db =
-//! dq/ds` without it. At a limit point `db` turns into `phi` instead. So an increment with more negative pivots than the last has
-//! passed a fork if `db` and the mode of least stiffness are nearly perpendicular. The other branch leaves along the mode
-//! (Wagner and Wriggers, Eng. Comput. 5 (1988) 103): Newton's method from the state that has converged plus a multiple of it,
-//! small ones first, until it ends in a state that lies in that direction and has no more negative pivots. With a given
-//! fraction that is a state at the same loads, which exists where the branch rises from the fork; on a path with arc lengths it is one as far from the
-//! last increment as the multiple is, whether the branch rises or falls.
+//! Where equilibrium forks, the tangent has a null vector `phi` that loads and motions do no work on: the path goes
+//! on along `db = dq/ds` without it. At a limit point `db` turns into `phi` instead. So an increment with more
+//! negative pivots than the last has passed a fork if `db` and the mode of least stiffness are nearly perpendicular.
+//! The other branch leaves along the mode (Wagner and Wriggers, Eng. Comput. 5 (1988) 103): Newton's method from the
+//! state that has converged plus a multiple of it, small ones first, until it ends in a state that lies in that
+//! direction and has no more negative pivots. With a given fraction that is a state at the same loads, which exists
+//! where the branch rises from the fork; on a path with arc lengths it is one as far from the last increment as the
+//! multiple is, whether the branch rises or falls.
 
 use super::arc_length::{Measure, Sweep};
 use super::driver::Analysis;

@@ -232,8 +232,8 @@ impl Analysis {
         LastTrial { displacement: &base.displacement, residual: &base.residual, time_increment }
     }
 
-    /// Estimate of the condition number \[-\] of the last tangent that was factorised, scaled to a unit diagonal; that of its
-    /// symmetric part where it is not symmetric, and none before the first factorisation.
+    /// Estimate of the condition number \[-\] of the last tangent that was factorised, scaled to a unit diagonal;
+    /// that of its symmetric part where it is not symmetric, and none before the first factorisation.
     pub fn condition(&mut self) -> Option<f64> {
         self.system.as_mut()?.condition()
     }
@@ -256,8 +256,8 @@ impl Analysis {
         self.steps_done
     }
 
-    /// Runs one step, or the rest of it after [`Analysis::restore`]. On an error the state is that of the last committed
-    /// increment.
+    /// Runs one step, or the rest of it after [`Analysis::restore`]. On an error the state is that of the last
+    /// committed increment.
     ///
     /// # Errors
     /// [`FemError`]; what an observer answers.
@@ -328,8 +328,8 @@ impl Analysis {
         step.increments.are_arcs() && !minimum
     }
 
-    /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no answer,
-    /// unless that was far from the path.
+    /// Whether a failure of Newton's method leads to a minimisation: where it found no way, not where a law had no
+    /// answer, unless that was far from the path.
     fn may_minimise(&self, step: &Step, cause: &FemError) -> bool {
         let stalled = matches!(cause, FemError::NotConverged { .. } | FemError::RunsAway { .. } | FemError::Linear(_));
         self.options.trust_region == TrustRegion::Auto

@@ -1,9 +1,9 @@
 //! Smoothing that vanishes: Newton's method by way of a softened model.
 //!
-//! Pressure that sets in at once leaves Newton's method to find out point by point what touches; where strands just touch along a
-//! long line it may go round in circles, however short the increment. Contributions that can soften what sets in abruptly
-//! do so in part, the iteration starts from the state found, and softens less, until nothing is softened: the state it ends in is one of
-//! the model as it is, to the tolerances asked for.
+//! Pressure that sets in at once leaves Newton's method to find out point by point what touches; where strands just
+//! touch along a long line it may go round in circles, however short the increment. Contributions that can soften
+//! what sets in abruptly do so in part, the iteration starts from the state found, and softens less, until nothing is
+//! softened: the state it ends in is one of the model as it is, to the tolerances asked for.
 
 use super::driver::Analysis;
 use super::newton::Attempt;

@@ -83,6 +83,14 @@ impl Numbers {
 mod tests {
     use super::Numbers;
 
+    /// The numbers of the reference implementation (Vigna, prng.di.unimi.it) for this seed.
+    #[test]
+    fn bits_are_those_of_splitmix64() {
+        let mut numbers = Numbers::new(1_234_567);
+        let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
+        assert_eq!(expected.map(|_| numbers.bits()), expected);
+    }
+
     #[test]
     fn numbers_fill_their_range() {
         let mut numbers = Numbers::new(1);

@@ -20,8 +20,9 @@ pub struct Solver {
     /// "auto": a line search when a full correction does not improve; on the energy where there is one. "off": full
     /// corrections always.
     pub line_search: LineSearch,
-    /// "auto": where an increment fails and no shorter one can be tried (`fixed`, `minimum`), contacts are softened and Newton's
-    /// method goes on from the state found with less and less of that, to none. "off": never. Not with an augmented Lagrangian.
+    /// "auto": where an increment fails and no shorter one can be tried (`fixed`, `minimum`), contacts are softened
+    /// and Newton's method goes on from the state found with less and less of that, to none. "off": never. Not with
+    /// an augmented Lagrangian.
     pub smoothing: Smoothing,
     /// Minimisation of the incremental potential within a trust region, which ends in a stable state; possible without
     /// friction that grows with pressure (`mu_t`, `mu_l`) and with `contact.friction = 0` or `contact.tangent =
@@ -29,13 +30,14 @@ pub struct Solver {
     /// "off": never. "always": in every increment, refused
     /// where it is not possible.
     pub trust_region: TrustRegion,
-    /// Where equilibrium forks and the branch becomes unstable, "follow": go on along it; "switch": leave for the branch that forks
-    /// off. That needs a symmetric tangent (no `mu_t`, `mu_l`; `contact.friction = 0` or `contact.tangent = "symmetric"`).
+    /// Where equilibrium forks and the branch becomes unstable, "follow": go on along it; "switch": leave for the
+    /// branch that forks off. That needs a symmetric tangent (no `mu_t`, `mu_l`; `contact.friction = 0` or
+    /// `contact.tangent = "symmetric"`).
     pub branch: BranchChoice,
     /// Start each increment from the extrapolated last one.
     pub extrapolate: bool,
-    /// Let large factors serve later iterations of an increment as the preconditioner of GMRES, where that costs less than
-    /// new ones.
+    /// Let large factors serve later iterations of an increment as the preconditioner of GMRES, where that costs less
+    /// than new ones.
     pub keep_factors: bool,
     /// Factor of the next increment after quick convergence \[-\], at least 1.
     #[schemars(range(min = 1.0))]

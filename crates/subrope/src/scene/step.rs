@@ -77,10 +77,11 @@ pub struct Increments {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000))]
     pub max_count: Option<usize>,
-    /// "load": loads and motions grow with the fraction of the step; "load" when left out. "arc_length": the fraction is an
-    /// unknown that may go back, past limit points and snap-back; `minimum` and `maximum` are then lengths of an arc in
-    /// motions and dissipation, which is the fraction as long as the structure is as stiff as at first; `initial` is still the
-    /// fraction of the first increment. Loads and motions must grow linearly from the start of the step to its end.
+    /// "load": loads and motions grow with the fraction of the step; "load" when left out. "arc_length": the fraction
+    /// is an unknown that may go back, past limit points and snap-back; `minimum` and `maximum` are then lengths of
+    /// an arc in motions and dissipation, which is the fraction as long as the structure is as stiff as at first;
+    /// `initial` is still the fraction of the first increment. Loads and motions must grow linearly from the start of
+    /// the step to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub control: Option<PathControl>,
 }
@@ -220,9 +221,9 @@ pub struct Tension {
     pub point: String,
 }
 
-/// Cycles of tension: the end `point` goes to `low` and back to `high`, `count` times; its other components stay. Every
-/// half cycle is a step of its own, named after this one: `duration` covers them all, `increments` and whatever else this
-/// step asks for hold for each.
+/// Cycles of tension: the end `point` goes to `low` and back to `high`, `count` times; its other components stay.
+/// Every half cycle is a step of its own, named after this one: `duration` covers them all, `increments` and whatever
+/// else this step asks for hold for each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cycles {
