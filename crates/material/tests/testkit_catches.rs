@@ -32,6 +32,8 @@ enum Fault {
     KeepsOutput,
     /// The stress feels a rotation.
     Turns,
+    /// The tangent alone does.
+    TangentTurns,
     /// A number is not finite at a large deformation.
     NotFinite(usize),
     AcceptsMissingElongation,
@@ -90,6 +92,7 @@ impl Law for Faulty {
             Fault::StressAlone if request == Request::Stress => out.second_piola[2] *= 1.0 + 1e-12,
             Fault::KeepsOutput if before > 1e20 => out.second_piola[5] = before,
             Fault::Turns => out.second_piola[3] += 1e-6 * (h.m12 - h.m21),
+            Fault::TangentTurns => out.tangent[(3, 3)] *= 1.0 + 1e-2 * (h.m12 - h.m21),
             Fault::NotFinite(which) if h.amax() > 500.0 => spoil(which, new, out),
             Fault::AcceptsMissingElongation if input.mean_elongation.is_some_and(f64::is_nan) => return Ok(()),
             Fault::AcceptsMissingState if old[0].is_nan() => return Ok(()),
@@ -171,6 +174,7 @@ fn every_check_finds_its_own_fault() {
     found(alone(Fault::StressAlone, testkit::idempotence), "stress alone");
     found(alone(Fault::KeepsOutput, testkit::idempotence), "output kept");
     found(alone(Fault::Turns, testkit::objectivity), "rotation");
+    found(alone(Fault::TangentTurns, testkit::objectivity), "rotation of the tangent");
     found(alone(Fault::Stress, testkit::transverse_isotropy), "anisotropy");
     found(alone(Fault::CouplingToFibre, testkit::mean_elongation_split), "split");
     found(alone(Fault::CouplingToFibre, testkit::mean_elongation_derivatives), "coupling");
