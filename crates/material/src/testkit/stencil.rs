@@ -66,3 +66,21 @@ fn probe(law: &dyn Law, input: &PointInput, old: &[f64], new: &mut [f64]) -> Res
     sample[7] = out.fibre.fibre_stress;
     Ok(Probe { sample, regime: regime(law, old, new) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parabola on either side of a kink at 0, which a quotient across it would not see.
+    #[test]
+    fn one_sided_quotients_are_those_of_the_parabola() {
+        for side in [1.0, -1.0] {
+            let sample = |x: f64| Sample::from_fn(|i, _| i as f64 + 3.0 * x + 2.0 * x * x);
+            let [here, near, far] = [0.0, side * STEP, 2.0 * side * STEP].map(sample);
+            let slope = one_sided(side, [&here, &near, &far]);
+            assert!(slope.is_some_and(|s| s.iter().all(|v| (v - 3.0).abs() < 1e-7)), "{slope:?}");
+            // Another slope beyond: the kink lies between.
+            assert_eq!(one_sided(side, [&here, &near, &(near + far)]), None);
+        }
+    }
+}
