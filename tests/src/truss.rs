@@ -75,6 +75,83 @@ impl Contribution for Bars {
     }
 }
 
+/// The law of springs between points along z.
+pub trait Springs {
+    /// Force, stiffness and energies of a spring at a stretch.
+    fn answer(&mut self, spring: usize, stretch: f64) -> (f64, f64, Energies);
+
+    /// The stretches asked last are those of the increment.
+    fn commit(&mut self) {}
+
+    /// As [`Contribution::soften`].
+    fn soften(&mut self, part: f64) -> bool {
+        let _ = part;
+        false
+    }
+}
+
+/// Springs along z, each between two nodes.
+pub struct Axial<S> {
+    /// Their ends.
+    pub nodes: Vec<[u32; 2]>,
+    /// Their law.
+    pub springs: S,
+}
+
+impl<S: Springs + Send> Contribution for Axial<S> {
+    fn element_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    fn element_nodes(&self, element: usize) -> &[u32] {
+        &self.nodes[element]
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn has_potential(&self) -> bool {
+        false
+    }
+
+    fn assemble(
+        &mut self,
+        at: &Configuration<'_>,
+        request: Request,
+        sink: &mut dyn Sink,
+    ) -> Result<Energies, FemError> {
+        let mut out = Energies::default();
+        for (e, [a, b]) in self.nodes.iter().enumerate() {
+            let stretch = at.displacement[3 * *b as usize + 2] - at.displacement[3 * *a as usize + 2];
+            let (force, stiffness, energies) = self.springs.answer(e, stretch);
+            out += energies;
+            let mut forces = [0.0; 6];
+            (forces[4], forces[5]) = (-force, force);
+            let mut matrix = [0.0; 36];
+            (matrix[28], matrix[29], matrix[34], matrix[35]) = (stiffness, -stiffness, -stiffness, stiffness);
+            sink.add(e, &forces, (request == Request::Tangent).then_some(&matrix));
+        }
+        Ok(out)
+    }
+
+    fn commit(&mut self) {
+        self.springs.commit();
+    }
+
+    fn soften(&mut self, part: f64) -> bool {
+        self.springs.soften(part)
+    }
+
+    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
+        Ok(())
+    }
+
+    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
+        Ok(())
+    }
+}
+
 /// Bars `(from, to, EA/L^3)` between points, all of whose coordinates are held but some.
 pub struct Truss {
     /// Model and state.

@@ -2,19 +2,21 @@
 
 use subrope_fem::analysis::{Analysis, BranchChoice, Increments, Model, NewtonOptions, PathControl, Step, TrustRegion};
 use subrope_fem::kinematics::Kinematics;
-use subrope_fem::{
-    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter,
-};
+use subrope_fem::{Energies, FemError};
 use subrope_tests::truss::{
-    APEX_DOWN, BAR, HEIGHT, State, TOP, Truss, WIDTH, apex_force, column, limit_force, push, von_mises,
+    APEX_DOWN, Axial, BAR, HEIGHT, Springs, State, TOP, Truss, WIDTH, apex_force, column, limit_force, push, von_mises,
 };
 
 fn options(branch: BranchChoice) -> NewtonOptions {
     NewtonOptions { force_tolerance: 1e-11, trust_region: TrustRegion::Off, branch, ..NewtonOptions::default() }
 }
 
+fn automatic(control: PathControl, minimum: f64, maximum: f64) -> Increments {
+    Increments::Automatic { control, initial: 0.02, minimum, maximum, max_count: 1000 }
+}
+
 fn arcs(maximum: f64) -> Increments {
-    Increments::Automatic { control: PathControl::ArcLength, initial: 0.02, minimum: 1e-5, maximum, max_count: 1000 }
+    automatic(PathControl::ArcLength, 1e-5, maximum)
 }
 
 /// Whether the fraction of the step goes back somewhere.
@@ -72,13 +74,7 @@ fn a_soft_press_snaps_back() -> Result<(), FemError> {
     assert!(goes_back(&states) && is_smooth(&truss.analysis));
     // Motion alone would have snapped.
     let mut truss = Truss::new(&points, &bars, &[APEX_DOWN], options(BranchChoice::Follow))?;
-    let increments = Increments::Automatic {
-        control: PathControl::Load,
-        initial: 0.02,
-        minimum: 1e-6,
-        maximum: 0.05,
-        max_count: 1000,
-    };
+    let increments = automatic(PathControl::Load, 1e-6, 0.05);
     let step = truss.step(increments).prescribe(press as u32, -2.8);
     let snapped = truss.run(&step).map(|_| truss.analysis.totals().jumps);
     assert!(!matches!(snapped, Ok(0)), "{snapped:?}");
@@ -87,7 +83,6 @@ fn a_soft_press_snaps_back() -> Result<(), FemError> {
 
 /// Springs in a row, the first of which slips at a force that falls with the slip: `F = F0 exp(-s/s0)`.
 struct Slipping {
-    nodes: Vec<[u32; 2]>,
     slip: f64,
     trial: f64,
 }
@@ -118,62 +113,23 @@ impl Slipping {
     }
 }
 
-impl Contribution for Slipping {
-    fn element_count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    fn element_nodes(&self, element: usize) -> &[u32] {
-        &self.nodes[element]
-    }
-
-    fn is_symmetric(&self) -> bool {
-        true
-    }
-
-    fn has_potential(&self) -> bool {
-        false
-    }
-
-    fn assemble(
-        &mut self,
-        at: &Configuration<'_>,
-        request: Request,
-        sink: &mut dyn Sink,
-    ) -> Result<Energies, FemError> {
-        let mut out = Energies::default();
-        for (e, [a, b]) in self.nodes.iter().enumerate() {
-            let stretch = at.displacement[3 * *b as usize + 2] - at.displacement[3 * *a as usize + 2];
-            let (force, stiffness) = if e == 0 {
-                let (slip, force, stiffness) = self.clutch(stretch);
-                let before = if slip > self.slip { strength(self.slip) } else { 0.0 };
-                out.dissipated_mid[0] += 0.5 * (force + before) * (slip - self.slip);
-                out.stored += 0.5 * force * force / CLUTCH;
-                self.trial = slip;
-                (force, stiffness)
-            } else {
-                out.stored += 0.5 * SPRING * stretch * stretch;
-                (SPRING * stretch, SPRING)
-            };
-            let mut forces = [0.0; 6];
-            (forces[4], forces[5]) = (-force, force);
-            let mut matrix = [0.0; 36];
-            (matrix[28], matrix[29], matrix[34], matrix[35]) = (stiffness, -stiffness, -stiffness, stiffness);
-            sink.add(e, &forces, (request == Request::Tangent).then_some(&matrix));
+impl Springs for Slipping {
+    fn answer(&mut self, spring: usize, stretch: f64) -> (f64, f64, Energies) {
+        let mut energies = Energies::default();
+        if spring > 0 {
+            energies.stored = 0.5 * SPRING * stretch * stretch;
+            return (SPRING * stretch, SPRING, energies);
         }
-        Ok(out)
+        let (slip, force, stiffness) = self.clutch(stretch);
+        let before = if slip > self.slip { strength(self.slip) } else { 0.0 };
+        energies.dissipated_mid[0] = 0.5 * (force + before) * (slip - self.slip);
+        energies.stored = 0.5 * force * force / CLUTCH;
+        self.trial = slip;
+        (force, stiffness, energies)
     }
 
     fn commit(&mut self) {
         self.slip = self.trial;
-    }
-
-    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
-        Ok(())
-    }
-
-    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
-        Ok(())
     }
 }
 
@@ -182,7 +138,8 @@ impl Contribution for Slipping {
 fn a_slipping_row_is_followed_by_its_dissipation() -> Result<(), FemError> {
     let nodes = SPRINGS as u32 + 1;
     let points = (0..=nodes).map(|n| nalgebra::Vector3::new(f64::from(n % 2), f64::from(n / 2 % 2), f64::from(n)));
-    let chain = Slipping { nodes: (0..nodes).map(|n| [n, n + 1]).collect(), slip: 0.0, trial: 0.0 };
+    let springs = Slipping { slip: 0.0, trial: 0.0 };
+    let chain = Axial { nodes: (0..nodes).map(|n| [n, n + 1]).collect(), springs };
     let model =
         Model { kinematics: Kinematics::new(points.collect(), Vec::new())?, contributions: vec![Box::new(chain)] };
     let free: Vec<u32> = (1..nodes).map(|n| 3 * n + 2).collect();

@@ -6,12 +6,12 @@
 use nalgebra::{Matrix3, Vector3};
 use subrope_fem::analysis::{IncrementRecord, Increments, Model, NewtonOptions, PathControl, TrustRegion};
 use subrope_fem::kinematics::Kinematics;
-use subrope_fem::{
-    Configuration, Contribution, Energies, FemError, Request, Sink, StateError, StateReader, StateWriter,
-};
+use subrope_fem::{Energies, FemError};
 use subrope_geometry::CellKind;
 use subrope_material::{EngineeringConstants, StVenantKirchhoff};
-use subrope_tests::truss::{APEX_DOWN, HEIGHT, TOP, Truss, apex_force, column, limit_force, push, von_mises};
+use subrope_tests::truss::{
+    APEX_DOWN, Axial, HEIGHT, Springs, TOP, Truss, apex_force, column, limit_force, push, von_mises,
+};
 use subrope_tests::{Brick, Lattice, Problem, Row, brick, constant_frames, rigid, run_scene};
 
 fn options(trust_region: TrustRegion) -> NewtonOptions {
@@ -101,59 +101,24 @@ fn a_stalled_run_goes_on_by_a_minimisation() -> Result<(), FemError> {
     Ok(())
 }
 
-/// A bar along z of force `atan(u + 3) - atan 3`, and a spring beside it as long as it is softened.
+/// A bar of force `atan(u + 3) - atan 3`, and a spring beside it as long as it is softened. Another without force holds the
+/// body against turning about it.
 struct Flat {
-    nodes: [u32; 3],
     spring: f64,
 }
 
-impl Contribution for Flat {
-    fn element_count(&self) -> usize {
-        1
-    }
-
-    fn element_nodes(&self, _: usize) -> &[u32] {
-        &self.nodes
-    }
-
-    fn is_symmetric(&self) -> bool {
-        true
-    }
-
-    fn has_potential(&self) -> bool {
-        false
-    }
-
-    fn assemble(
-        &mut self,
-        at: &Configuration<'_>,
-        request: Request,
-        sink: &mut dyn Sink,
-    ) -> Result<Energies, FemError> {
-        let u = at.displacement[5] - at.displacement[2];
+impl Springs for Flat {
+    fn answer(&mut self, spring: usize, u: f64) -> (f64, f64, Energies) {
+        if spring > 0 {
+            return (0.0, 0.0, Energies::default());
+        }
         let force = (u + 3.0).atan() - 3.0_f64.atan() + self.spring * u;
-        let stiffness = 1.0 / (1.0 + (u + 3.0) * (u + 3.0)) + self.spring;
-        let mut forces = [0.0; 9];
-        (forces[6], forces[7]) = (-force, force);
-        let mut matrix = [0.0; 81];
-        (matrix[60], matrix[61], matrix[69], matrix[70]) = (stiffness, -stiffness, -stiffness, stiffness);
-        sink.add(0, &forces, (request == Request::Tangent).then_some(&matrix));
-        Ok(Energies::default())
+        (force, 1.0 / (1.0 + (u + 3.0) * (u + 3.0)) + self.spring, Energies::default())
     }
-
-    fn commit(&mut self) {}
 
     fn soften(&mut self, part: f64) -> bool {
         self.spring = part;
         true
-    }
-
-    fn save(&self, _: &mut dyn StateWriter) -> Result<(), StateError> {
-        Ok(())
-    }
-
-    fn restore(&mut self, _: &dyn StateReader) -> Result<(), StateError> {
-        Ok(())
     }
 }
 
@@ -161,10 +126,9 @@ impl Contribution for Flat {
 /// carries the load.
 #[test]
 fn softening_leads_the_way_and_vanishes() -> Result<(), FemError> {
-    // The third node holds the body against turning about the bar.
     let points = vec![Vector3::zeros(), Vector3::new(0.0, 0.0, 10.0), Vector3::x()];
     for smoothing in [false, true] {
-        let flat = Flat { nodes: [0, 1, 2], spring: 0.0 };
+        let flat = Axial { nodes: vec![[0, 1], [0, 2]], springs: Flat { spring: 0.0 } };
         let model =
             Model { kinematics: Kinematics::new(points.clone(), Vec::new())?, contributions: vec![Box::new(flat)] };
         let options = NewtonOptions { smoothing, line_search: false, ..options(TrustRegion::Off) };

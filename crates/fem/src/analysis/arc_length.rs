@@ -40,8 +40,9 @@
 //! go beyond.
 
 use super::driver::Analysis;
+use super::line_search::ends_search;
 use super::newton::{Attempt, hopeless, relative_residual};
-use super::record::{IncrementRecord, Phase};
+use super::record::IncrementRecord;
 use super::step::Step;
 use super::workspace::{Iterate, Workspace};
 use crate::contribution::Request;
@@ -112,7 +113,7 @@ impl Analysis {
         let by_arc = self.follow_by(work, step, (attempt, record), Measure::Arc);
         let suspect = match &by_arc {
             Ok(()) => self.unloads(work, start, *attempt),
-            Err(error) => error.is_recoverable() && !matches!(error, FemError::SearchOutdated),
+            Err(error) => !ends_search(error),
         };
         if !suspect || !self.dissipates(work) {
             return by_arc.and_then(|()| self.settle_path(work, step, attempt, record));
@@ -121,7 +122,7 @@ impl Analysis {
         *attempt = start;
         match self.follow_by(work, step, (attempt, record), Measure::Dissipation) {
             Ok(()) => self.stretch(&work.base, attempt),
-            Err(error) if !error.is_recoverable() || matches!(error, FemError::SearchOutdated) => return Err(error),
+            Err(error) if ends_search(&error) => return Err(error),
             // Sliding has come to an end.
             Err(_) if by_arc.is_ok() && start.last_resort => {
                 *attempt = start;
@@ -162,9 +163,7 @@ impl Analysis {
         self.start_anew(work);
         let ratio = attempt.length / self.last_length;
         attempt.to = attempt.from + ratio * self.path.advance;
-        for ((q, committed), change) in work.base.q.iter_mut().zip(&self.q).zip(&self.last_change) {
-            *q = committed + ratio * change;
-        }
+        self.continue_last(&mut work.base, ratio);
         self.correct_along(work, step, (attempt, record), measure)
     }
 
@@ -226,12 +225,7 @@ impl Analysis {
 
     /// Whether the base is about as far along the path as it shall be.
     fn is_as_long(&self, work: &Workspace, attempt: Attempt, measure: Measure) -> bool {
-        let dissipated = self.in_work(dissipation(&work.base.energies));
-        let motion = match measure {
-            Measure::Arc => self.elastic_arc(&self.moved(&work.base), attempt.to - attempt.from),
-            Measure::Dissipation => 0.0,
-        };
-        (attempt.length - dissipated - motion).abs() <= ABOUT * attempt.length
+        (attempt.length - self.measured(&work.base, attempt, measure)).abs() <= ABOUT * attempt.length
     }
 
     /// The path goes beyond the end of the step: the increment ends there.
@@ -244,15 +238,12 @@ impl Analysis {
     ) -> Result<(), FemError> {
         let part = (1.0 - attempt.from) / (attempt.to - attempt.from);
         (attempt.to, attempt.length) = (1.0, part * attempt.length);
-        self.model.contributions.iter_mut().for_each(|c| c.revert());
-        self.aim_at(work, step, *attempt);
+        self.start_anew(work);
         for (q, committed) in work.base.q.iter_mut().zip(&self.q) {
             *q = committed + part * (*q - committed);
         }
-        work.target.impose(&mut work.base.q);
-        self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
-        let spent = (record.iterations, record.residuals.len());
-        self.iterate_on(work, *attempt, record, spent)
+        self.aim_at(work, step, *attempt);
+        self.iterate_here(work, *attempt, record)
     }
 
     /// Loads and motions at the end of an attempt, imposed on the base.
@@ -279,9 +270,7 @@ impl Analysis {
         for (b, &c) in rhs.iter_mut().zip(self.equations()?.coordinates()) {
             *b = (base.residual[c as usize] - trial.residual[c as usize]) / ahead;
         }
-        let system = self.system.as_mut().ok_or(FemError::NonFiniteResidual)?;
-        self.totals.linear_iterations +=
-            self.phases.measure(Phase::Solution, || system.solve(rhs, &mut sweep.along))?;
+        self.solve_by_factors(rhs, &mut sweep.along)?;
         let dissipated = dissipation(&base.energies);
         if dissipated > 0.0 && self.path.work > 0.0 {
             self.equations()?.scatter_add(ahead, &sweep.along, &mut trial.q);
@@ -295,8 +284,16 @@ impl Analysis {
 
     /// Makes the length of an attempt that of the arc to an iterate.
     pub(super) fn stretch(&self, iterate: &Iterate, attempt: &mut Attempt) {
-        attempt.length = self.elastic_arc(&self.moved(iterate), attempt.to - attempt.from)
-            + self.in_work(dissipation(&iterate.energies));
+        attempt.length = self.measured(iterate, *attempt, Measure::Arc);
+    }
+
+    /// How far an iterate is along the path.
+    fn measured(&self, iterate: &Iterate, attempt: Attempt, measure: Measure) -> f64 {
+        let motion = match measure {
+            Measure::Arc => self.elastic_arc(&self.moved(iterate), attempt.to - attempt.from),
+            Measure::Dissipation => 0.0,
+        };
+        motion + self.in_work(dissipation(&iterate.energies))
     }
 
     /// `sqrt((|dq|^2/U^2 + ds^2)/2)`.
@@ -306,31 +303,30 @@ impl Analysis {
 
     /// The change of the fraction that brings the arc, linearised, to its length.
     fn go_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep, measure: Measure) -> Result<f64, FemError> {
-        let dissipated = self.in_work(dissipation(&work.base.energies));
-        let (mut lacking, mut along) = (attempt.length - dissipated, self.in_work(sweep.dissipation));
+        let mut lacking = attempt.length - self.measured(&work.base, attempt, measure);
+        let mut along = self.in_work(sweep.dissipation);
         if measure == Measure::Arc {
-            let (arc, by_residual, by_path) = self.motion_along(work, attempt, sweep)?;
-            lacking -= arc + by_residual;
+            let (by_correction, by_path) = self.motion_along(work, attempt, sweep)?;
+            lacking -= by_correction;
             along += by_path;
         }
         let change = lacking / along;
         if change.is_finite() { Ok(change) } else { Err(FemError::NonFiniteResidual) }
     }
 
-    /// The part of the arc that motions and fraction make, its change by the correction, and its derivative along the
-    /// path.
-    fn motion_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep) -> Result<(f64, f64, f64), FemError> {
+    /// The change by the correction of the part of the arc that motions and fraction make, and its derivative along
+    /// the path.
+    fn motion_along(&self, work: &Workspace, attempt: Attempt, sweep: &Sweep) -> Result<(f64, f64), FemError> {
         let moved = self.moved(&work.base);
         let advance = attempt.to - attempt.from;
         let elastic = self.elastic_arc(&moved, advance);
         let mut direction = vec![0.0; self.q.len()];
         let equations = self.equations()?;
         equations.scatter_add(1.0, &work.correction, &mut direction);
-        let fixed = 0.5 * self.path_product(&moved, &direction) / elastic;
+        let by_correction = 0.5 * self.path_product(&moved, &direction) / elastic;
         direction.fill(0.0);
         equations.scatter_add(1.0, &sweep.along, &mut direction);
-        let along = 0.5 * (self.path_product(&moved, &direction) + advance) / elastic;
-        Ok((elastic, fixed, along))
+        Ok((by_correction, 0.5 * (self.path_product(&moved, &direction) + advance) / elastic))
     }
 
     /// Whether sliding of the iterate, or of the last increment, gives a measure.
@@ -340,29 +336,27 @@ impl Analysis {
 
     /// Whether an increment dissipates far less than the last one leads one to expect.
     fn unloads(&self, work: &Workspace, asked: Attempt, found: Attempt) -> bool {
-        let expected = asked.length / self.last_length * self.path.dissipation;
         // The end of a step cuts increments short.
-        found.to <= 1.0 && dissipation(&work.base.energies) < UNLOADING * expected
+        found.to <= 1.0 && dissipation(&work.base.energies) < self.least_dissipation(asked.length)
     }
 
     /// Whether an increment that unloads goes back on the way that the last one came.
     fn turns_back(&self, work: &Workspace, attempt: Attempt) -> bool {
         let advance = attempt.to - attempt.from;
         let forward = self.path_product(&self.moved(&work.base), &self.last_change) + advance * self.path.advance;
-        let expected = attempt.length / self.last_length * self.path.dissipation;
-        forward < 0.0 && dissipation(&work.base.energies) <= UNLOADING * expected
+        forward < 0.0 && dissipation(&work.base.energies) <= self.least_dissipation(attempt.length)
     }
 
-    fn moved(&self, iterate: &Iterate) -> Vec<f64> {
-        iterate.q.iter().zip(&self.q).map(|(new, old)| new - old).collect()
+    /// The dissipation below which an increment of some length unloads \[mJ\].
+    fn least_dissipation(&self, length: f64) -> f64 {
+        UNLOADING * length / self.last_length * self.path.dissipation
     }
 
     /// `a.b/U^2` over the unknowns.
     fn path_product(&self, a: &[f64], b: &[f64]) -> f64 {
         let unit = self.path.motion * self.path.motion;
         let free = (0..a.len()).filter(|&c| !self.prescribed[c]);
-        let weight = |c: usize| if self.is_rotation(c) { self.lever * self.lever } else { 1.0 };
-        free.map(|c| weight(c) * a[c] * b[c]).sum::<f64>() / unit
+        free.map(|c| self.lever_of(c).powi(2) * a[c] * b[c]).sum::<f64>() / unit
     }
 
     /// A dissipation over `W`.

@@ -11,6 +11,7 @@
 
 use super::arc_length::{Measure, Sweep};
 use super::driver::Analysis;
+use super::line_search::ends_search;
 use super::mode::Metric;
 use super::newton::Attempt;
 use super::record::IncrementRecord;
@@ -36,6 +37,7 @@ struct Fork {
     q: Vec<f64>,
     /// The mode, as coordinates, as large as the change of the increment.
     mode: Vec<f64>,
+    metric: Metric,
     energies: Energies,
     negative_pivots: usize,
 }
@@ -73,9 +75,7 @@ impl Analysis {
                     record.switched = true;
                     return Ok(());
                 }
-                Err(error) if !error.is_recoverable() || matches!(error, FemError::SearchOutdated) => {
-                    return Err(error);
-                }
+                Err(error) if ends_search(&error) => return Err(error),
                 _ => {}
             }
         }
@@ -97,19 +97,16 @@ impl Analysis {
         let mut sweep = Sweep::new(work.rhs.len());
         self.sweep(work, step, attempt, &mut sweep)?;
         self.aim_at(work, step, attempt);
-        metric.weigh(&sweep.along, &mut buffer);
-        let common: f64 = buffer.iter().zip(&mode).map(|(a, b)| a * b).sum();
-        if common.abs() >= FORK * metric.length(&sweep.along) {
+        if metric.product(&sweep.along, &mode).abs() >= FORK * metric.length(&sweep.along) {
             return Ok(None);
         }
         let q = work.base.q.clone();
         let mut direction = vec![0.0; q.len()];
         self.equations()?.scatter_add(1.0, &mode, &mut direction);
-        let moved: Vec<f64> = q.iter().zip(&self.q).map(|(new, old)| new - old).collect();
-        let scale = self.largest(&moved) / self.largest(&direction);
+        let scale = self.largest(&self.moved(&work.base)) / self.largest(&direction);
         direction.iter_mut().for_each(|d| *d *= scale);
         let energies = work.base.energies;
-        Ok(scale.is_normal().then_some(Fork { q, mode: direction, energies, negative_pivots }))
+        Ok(scale.is_normal().then_some(Fork { q, mode: direction, metric, energies, negative_pivots }))
     }
 
     /// Newton's method from beside the state that has converged.
@@ -132,9 +129,7 @@ impl Analysis {
             self.correct_along(work, step, (attempt, record), Measure::Arc)?;
         } else {
             self.aim_at(work, step, *attempt);
-            self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
-            let spent = (record.iterations, record.residuals.len());
-            self.iterate_on(work, *attempt, record, spent)?;
+            self.iterate_here(work, *attempt, record)?;
         }
         record.negative_pivots = self.count_negative_pivots()?;
         Ok(())
@@ -142,27 +137,24 @@ impl Analysis {
 
     /// Whether the base lies on the branch that forks off.
     fn is_aside(&self, work: &mut Workspace, fork: &Fork, pivots: Option<usize>) -> Result<bool, FemError> {
-        let system = self.system.as_ref().ok_or(FemError::NonFiniteResidual)?;
-        let metric = self.metric_of_motion()?;
+        let (equations, metric) = (self.equations()?, &fork.metric);
         let way: Vec<f64> = work.base.q.iter().zip(&fork.q).map(|(new, old)| new - old).collect();
-        system.equations().gather(&way, &mut work.correction);
-        system.equations().gather(&fork.mode, &mut work.rhs);
+        equations.gather(&way, &mut work.correction);
+        equations.gather(&fork.mode, &mut work.rhs);
         let lengths = metric.length(&work.correction) * metric.length(&work.rhs);
-        metric.weigh(&work.rhs.clone(), &mut work.rhs);
-        let common: f64 = work.rhs.iter().zip(&work.correction).map(|(a, b)| a * b).sum();
+        let common = metric.product(&work.rhs, &work.correction);
         let moved = self.largest(&way) > STILL * self.largest(&fork.mode);
         Ok(moved && common.abs() > ASIDE * lengths && pivots.is_some_and(|now| now <= fork.negative_pivots))
     }
 
     /// Motions, rotations times the lever \[mm\].
     fn metric_of_motion(&self) -> Result<Metric, FemError> {
-        let weight = |c: &u32| if self.is_rotation(*c as usize) { self.lever * self.lever } else { 1.0 };
+        let weight = |c: &u32| self.lever_of(*c as usize).powi(2);
         Ok(Metric { weights: self.equations()?.coordinates().iter().map(weight).collect() })
     }
 
     /// The largest coordinate, rotations times the lever \[mm\].
     fn largest(&self, q: &[f64]) -> f64 {
-        let lever = |c: usize| if self.is_rotation(c) { self.lever } else { 1.0 };
-        q.iter().enumerate().fold(0.0, |most, (c, value)| most.max((lever(c) * value).abs()))
+        q.iter().enumerate().fold(0.0, |most, (c, value)| most.max((self.lever_of(c) * value).abs()))
     }
 }

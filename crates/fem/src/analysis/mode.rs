@@ -29,7 +29,12 @@ impl Metric {
 
     /// `|x|`.
     pub fn length(&self, x: &[f64]) -> f64 {
-        self.weights.iter().zip(x).map(|(w, x)| w * x * x).sum::<f64>().sqrt()
+        self.product(x, x).sqrt()
+    }
+
+    /// `a.D b`.
+    pub fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.weights.iter().zip(a).zip(b).map(|((w, a), b)| w * a * b).sum()
     }
 
     /// `D x`.

@@ -131,9 +131,21 @@ impl Analysis {
         self.iterate_on(work, attempt, record, spent)
     }
 
+    /// Newton's method from the base as it stands.
+    pub(super) fn iterate_here(
+        &mut self,
+        work: &mut Workspace,
+        attempt: Attempt,
+        record: &mut IncrementRecord,
+    ) -> Result<(), FemError> {
+        self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+        let spent = (record.iterations, record.residuals.len());
+        self.iterate_on(work, attempt, record, spent)
+    }
+
     /// Newton's method from the base, which is evaluated; `spent` and `seen` are the iterations and residuals before this
     /// round of multipliers.
-    pub(super) fn iterate_on(
+    fn iterate_on(
         &mut self,
         work: &mut Workspace,
         attempt: Attempt,
@@ -203,10 +215,7 @@ impl Analysis {
         record: &mut IncrementRecord,
     ) -> Result<(), FemError> {
         if self.options.extrapolate && self.last_length > 0.0 {
-            let ratio = attempt.length / self.last_length;
-            for ((q, committed), change) in work.base.q.iter_mut().zip(&self.q).zip(&self.last_change) {
-                *q = committed + ratio * change;
-            }
+            self.continue_last(&mut work.base, attempt.length / self.last_length);
             work.target.impose(&mut work.base.q);
             match self.evaluate(&mut work.base, &work.target, None, Request::Tangent) {
                 Err(error) if !matches!(error, FemError::SearchOutdated) => {}
@@ -214,6 +223,18 @@ impl Analysis {
             }
         }
         self.predict(work, record)
+    }
+
+    /// Puts an iterate where so many times the last increment leads.
+    pub(super) fn continue_last(&self, iterate: &mut Iterate, times: f64) {
+        for ((q, committed), change) in iterate.q.iter_mut().zip(&self.q).zip(&self.last_change) {
+            *q = committed + times * change;
+        }
+    }
+
+    /// Change of the coordinates from the committed state.
+    pub(super) fn moved(&self, iterate: &Iterate) -> Vec<f64> {
+        iterate.q.iter().zip(&self.q).map(|(new, old)| new - old).collect()
     }
 
     /// One linear step from the committed state with the motion of the prescribed coordinates linearised, so that
@@ -269,8 +290,7 @@ impl Analysis {
         let Some(system) = self.system.as_mut() else { return Ok(None) };
         let pivots = self.phases.measure(Phase::Factorisation, || system.factorise())?;
         work.aim(system.equations());
-        let (rhs, x) = (&work.rhs, &mut work.correction);
-        self.totals.linear_iterations += self.phases.measure(Phase::Solution, || system.solve(rhs, x))?;
+        self.solve_by_factors(&work.rhs, &mut work.correction)?;
         Ok(pivots)
     }
 
@@ -347,7 +367,7 @@ impl Analysis {
     fn measure(&self, iterate: &mut Iterate, target: &super::workspace::Target, scale: f64) {
         let (mut free, mut held) = (0.0, 0.0);
         for (c, r) in iterate.residual.iter().enumerate() {
-            let lever = if self.is_rotation(c) { self.lever } else { 1.0 };
+            let lever = self.lever_of(c);
             let value = (r / lever) * (r / lever);
             if self.prescribed[c] { held += value } else { free += value }
         }
@@ -360,8 +380,9 @@ impl Analysis {
         }
     }
 
-    pub(super) fn is_rotation(&self, coordinate: usize) -> bool {
-        self.model.kinematics.is_rotation(coordinate)
+    /// What turns a coordinate, or divides its force, into a length, or a force: the lever of a rotation \[mm\], else 1.
+    pub(super) fn lever_of(&self, coordinate: usize) -> f64 {
+        if self.model.kinematics.is_rotation(coordinate) { self.lever } else { 1.0 }
     }
 
     /// The trial becomes the committed state; the work of the increment by the trapezoidal rule.

@@ -6,11 +6,11 @@
 //! softened: the state it ends in is one of the model as it is, to the tolerances asked for.
 
 use super::driver::Analysis;
+use super::line_search::ends_search;
 use super::newton::Attempt;
 use super::record::IncrementRecord;
 use super::workspace::Workspace;
 use crate::FemError;
-use crate::contribution::Request;
 
 /// Parts of the softening, one after the other.
 const PARTS: [f64; 4] = [1.0, 0.1, 0.01, 0.0];
@@ -21,8 +21,7 @@ const ROUGH: f64 = 1e-4;
 impl Analysis {
     /// Whether Newton's method may try again on a softened model.
     pub(super) fn may_soften(&mut self, attempt: Attempt, cause: &FemError) -> bool {
-        let lost = cause.is_recoverable() && !matches!(cause, FemError::SearchOutdated);
-        attempt.may_soften && lost && self.soften(0.0)
+        attempt.may_soften && !ends_search(cause) && self.soften(0.0)
     }
 
     /// Newton's method with less and less softening.
@@ -61,14 +60,10 @@ impl Analysis {
         start: bool,
     ) -> Result<(), FemError> {
         if start {
-            self.start_anew(work);
-            self.first_iterate(work, attempt, record)?;
-        } else {
-            work.factors.forget();
-            self.evaluate(&mut work.base, &work.target, None, Request::Tangent)?;
+            return self.iterate(work, attempt, record);
         }
-        let spent = (record.iterations, record.residuals.len());
-        self.iterate_on(work, attempt, record, spent)
+        work.factors.forget();
+        self.iterate_here(work, attempt, record)
     }
 
     /// Softens all contributions by a part; says whether there is one that can be.

@@ -151,8 +151,7 @@ impl Analysis {
     fn region(&self, work: &mut Workspace) -> Result<Region, FemError> {
         let system = self.system.as_ref().ok_or(FemError::NonFiniteResidual)?;
         let mut region = Region::new(system);
-        let moved: Vec<f64> = work.base.q.iter().zip(&self.q).map(|(new, old)| new - old).collect();
-        system.equations().gather(&moved, &mut region.buffer);
+        system.equations().gather(&self.moved(&work.base), &mut region.buffer);
         work.aim(system.equations());
         let jacobi = work.rhs.iter().zip(&region.metric.weights).map(|(r, w)| r * r / w).sum::<f64>().sqrt();
         region.radius = region.metric.length(&region.buffer).max(jacobi);
