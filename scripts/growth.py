@@ -7,14 +7,17 @@ Families: length (pitches of a rope), turns (of one strand, without contact), se
 (their number), cycles (of a helical slice), threads (gain of a second one, and whether the bits are the same), largest (one
 increment of a strand of --turns, two threads; only when asked for). Every member but the cycles is two iterations of a pull, of
 the rope of scenes/sub_rope_cycles.toml or of the strand of scenes/strand_tension.toml, on one thread unless said. Members run
-interleaved, and the least time of the repeats counts: what is above it is the machine's. An exponent is that of the cost
-between neighbours in the table, d log cost / d log unknowns.
+in turn, --repeats rounds. The machine changes its speed from one second to the next: the least of some repeats would be a fast
+moment for a short run and never for a long one, so that cost would seem to grow faster than it does. Short members therefore run
+several times in a round, as long in all as the longest (at most SHARES times), and the median of all runs counts. An exponent is
+that of the cost between neighbours in the table, d log cost / d log unknowns.
 """
 import argparse
 import json
 import math
 import pathlib
 import re
+import statistics
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -61,6 +64,8 @@ LINEAR = {"length": "pitch", "turns": "turn"}
 # Exit code of a run that ends before its last step.
 NOT_CONVERGED = 3
 PHASES = ("assembly", "factorisation", "solution")
+# Runs of the shortest member in a round.
+SHARES = 16
 
 
 def changed(text, changes, section=None):
@@ -102,25 +107,32 @@ def costs(summary):
     return out
 
 
-def keep_least(best, key, summary):
-    """Keeps the least of every cost of a member."""
-    new = costs(summary)
-    best[key] = {k: min(v, best.get(key, new)[k]) for k, v in new.items()}
+def median(runs):
+    """The median of every cost of some runs."""
+    return {k: statistics.median(cost[k] for cost in runs) for k in runs[0]}
+
+
+def measured(args, family, members):
+    """Median costs and sizes of the members that run, and why the others do not."""
+    runs, sizes, failed = {}, {}, {}
+    shares = {name: 1 for name, _ in members}
+    for _ in range(args.repeats):
+        for name, changes in members:
+            for _ in range(0 if name in failed else shares[name]):
+                summary, why = run(args, family, name, scene(changes), to_the_end=False)
+                if summary is None:
+                    failed[name] = why
+                    break
+                sizes[name] = summary["size"]
+                runs.setdefault(name, []).append(costs(summary))
+        longest = max((median(r)["iteration"] for r in runs.values()), default=0.0)
+        shares = {name: min(SHARES, round(longest / median(r)["iteration"])) for name, r in runs.items()}
+    return {name: median(r) for name, r in runs.items()}, sizes, failed, {name: len(r) for name, r in runs.items()}
 
 
 def family_table(args, family):
     members = FAMILIES[family]
-    best, sizes, failed = {}, {}, {}
-    for _ in range(args.repeats):
-        for name, changes in members:
-            if name in failed:
-                continue
-            summary, why = run(args, family, name, scene(changes), to_the_end=False)
-            if summary is None:
-                failed[name] = why
-                continue
-            sizes[name] = summary["size"]
-            keep_least(best, name, summary)
+    medians, sizes, failed, counts = measured(args, family, members)
     print(f"\n| {family} | unknowns | GFLOP | factorisation GFLOP/s | assembly ms | factorisation ms | solution ms "
           "| iteration ms | exponent | memory MB | exponent |")
     print("|" + "---|" * 11)
@@ -129,7 +141,7 @@ def family_table(args, family):
         if name in failed:
             print(f"| {name} | {failed[name]} |" + " |" * 9)
             continue
-        cost, size = best[name], sizes[name]
+        cost, size = medians[name], sizes[name]
         flops = size["factor_flops"] / 1e9
         exponents = ("", "")
         if before:
@@ -141,18 +153,18 @@ def family_table(args, family):
                  f"{cost['memory']:.0f}", exponents[1]]
         print("| " + " | ".join(map(str, cells)) + " |", flush=True)
     if family in LINEAR:
-        print_added(members, best, LINEAR[family])
-    first, last = (next((n for n, _ in order if n in best), None) for order in (members, members[::-1]))
+        print_added(members, medians, LINEAR[family])
+    first, last = (next((n for n, _ in order if n in medians), None) for order in (members, members[::-1]))
     if first != last:
         ratio = math.log(sizes[last]["unknowns"] / sizes[first]["unknowns"])
-        overall = {k: math.log(best[last][k] / best[first][k]) / ratio for k in ("iteration", "memory")}
+        overall = {k: math.log(medians[last][k] / medians[first][k]) / ratio for k in ("iteration", "memory")}
         print(f"\nFrom {first} to {last}: exponent {overall['iteration']:.2f} of the time of an iteration, "
-              f"{overall['memory']:.2f} of the memory; least of {args.repeats} runs.")
+              f"{overall['memory']:.2f} of the memory; median of {counts[first]} to {counts[last]} runs.")
 
 
-def print_added(members, best, unit):
+def print_added(members, medians, unit):
     """What each further unit of length costs, from one member to the next."""
-    known = [(int(name.split()[0]), best[name]["iteration"]) for name, _ in members if name in best]
+    known = [(int(name.split()[0]), medians[name]["iteration"]) for name, _ in members if name in medians]
     added = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(known, known[1:])]
     print(f"\nThe first {members[0][0]}: {known[0][1]:.0f} ms an iteration, each further {unit} "
           + ", ".join(f"{value:.0f}" for value in added) + " ms from one member to the next.")
@@ -176,18 +188,19 @@ def threads_table(args):
     print("\n| length | threads | assembly ms | factorisation ms | solution ms | iteration ms | gain | same bits |")
     print("|" + "---|" * 8)
     for name, changes in FAMILIES["length"][:4]:
-        best = {}
+        runs = {1: [], 2: []}
         for _ in range(args.repeats):
-            for threads in (1, 2):
+            for threads in runs:
                 summary, why = run(args, f"threads_{threads}", name, scene(changes), threads, to_the_end=False)
                 if summary is None:
                     print(f"| {name} | {threads} | {why} |" + " |" * 5)
                     return
-                keep_least(best, threads, summary)
-        tables = [args.out / f"threads_{t}" / name.replace(" ", "_") / "results" / "history.csv" for t in best]
+                runs[threads].append(costs(summary))
+        medians = {threads: median(r) for threads, r in runs.items()}
+        tables = [args.out / f"threads_{t}" / name.replace(" ", "_") / "results" / "history.csv" for t in medians]
         same = "yes" if len({table.read_bytes() for table in tables}) == 1 else "NO"
-        for threads, cost in best.items():
-            gain = f"{best[1]['iteration'] / cost['iteration']:.2f}" if threads > 1 else ""
+        for threads, cost in medians.items():
+            gain = f"{medians[1]['iteration'] / cost['iteration']:.2f}" if threads > 1 else ""
             phases = " | ".join(f"{cost[p]:.0f}" for p in PHASES)
             print(f"| {name} | {threads} | {phases} | {cost['iteration']:.0f} | {gain} | {same if threads > 1 else ''} |", flush=True)
 
