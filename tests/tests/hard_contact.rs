@@ -95,3 +95,34 @@ prescribe = [{ point = "ROD", ux = -1.39 }]
         assert!(force > 1.0 && most <= 15);
     }
 }
+
+/// With the pressure of the last iterate as its limit, friction has a potential: where minimising it ends is the state that
+/// Newton's method finds with the exact tangent.
+#[test]
+fn friction_minimised_is_friction() {
+    let steps = r#"
+[[step]]
+name = "press"
+increments = { fixed = 3 }
+prescribe = [{ point = "ROD", ux = -0.3 }]
+[[step]]
+name = "rub"
+increments = { fixed = 2 }
+prescribe = [{ point = "ROD", uz = 0.13 }]
+"#;
+    let exact = rod_on_strand(0.3, steps);
+    let minimised = exact.replace("friction = 0.3", "friction = 0.3\ntangent = \"symmetric\"")
+        + "\n[solver]\ntrust_region = \"always\"\n";
+    let [exact, minimised] = [exact, minimised].map(|text| run_scene(&text, None));
+    let force = |run: &Run| run.model.analysis.point_reaction(run.point("ROD")).0;
+    let (wanted, found) = (force(&exact), force(&minimised));
+    let lost = |run: &Run| run.model.analysis.totals().contact_friction;
+    println!(
+        "{wanted:?} N with the exact tangent, {found:?} N minimised; {} and {} mJ",
+        lost(&exact),
+        lost(&minimised)
+    );
+    assert!(minimised.model.analysis.totals().minimised >= 5 && lost(&exact) > 0.0);
+    assert!((found - wanted).norm() < 1e-6 * wanted.norm());
+    assert!((lost(&minimised) - lost(&exact)).abs() < 1e-6 * lost(&exact));
+}

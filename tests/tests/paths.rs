@@ -6,6 +6,7 @@ use subrope_fem::{Energies, FemError};
 use subrope_tests::truss::{
     APEX_DOWN, Axial, BAR, HEIGHT, Springs, State, TOP, Truss, WIDTH, apex_force, column, limit_force, push, von_mises,
 };
+use subrope_tests::{run_scene, scene_file};
 
 fn options(branch: BranchChoice) -> NewtonOptions {
     NewtonOptions { force_tolerance: 1e-11, trust_region: TrustRegion::Off, branch, ..NewtonOptions::default() }
@@ -225,4 +226,20 @@ fn a_column_leaves_for_its_bent_branch() -> Result<(), FemError> {
         );
     }
     Ok(())
+}
+
+/// Friction that grows with pressure has no potential, so that nothing but the path leads past the limit point.
+#[test]
+fn a_strand_with_friction_by_pressure_is_pushed_through() {
+    let text = scene_file("buckled_strand.toml")
+        .replace("friction = false\n", "tau_t = 0.05\nmu_t = 0.2\nX_t = 2.0\ntau_l = 0.5\nmu_l = 0.1\nX_l = 2.0\n");
+    let run = run_scene(&text, None);
+    let fractions: Vec<f64> =
+        run.rows.iter().filter(|r| r.record.step == "push through").map(|r| r.record.fraction).collect();
+    let totals = run.model.analysis.totals();
+    println!("{} states, fractions {fractions:.3?}, {totals:?}", run.rows.len());
+    assert!(!run.model.analysis.model().can_be_minimised());
+    assert!(fractions.windows(2).any(|w| w[1] < w[0]), "the load goes back");
+    assert_eq!((fractions.last().copied(), totals.jumps, totals.minimised), (Some(1.0), 0, 0));
+    assert!(totals.energy_error().abs() < 1e-3, "{}", totals.energy_error());
 }

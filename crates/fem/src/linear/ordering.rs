@@ -6,6 +6,7 @@ use super::error::LinearError;
 use super::fill::{Elimination, FillEstimate, postorder};
 use super::graph::Graph;
 use super::levels::{Levels, Origin, components};
+use super::wavefront;
 
 /// Below this number of vertices nested dissection has nothing to dissect.
 const DISSECTION_VERTICES: usize = 200;
@@ -23,6 +24,10 @@ pub enum Ordering {
     Layers,
     /// Layer by layer from both ends to the middle: two independent branches.
     TwistedLayers,
+    /// Vertex by vertex, so that the wavefront stays short, from one end to the other.
+    Wavefront,
+    /// The same from both ends to the middle: two independent branches.
+    TwistedWavefront,
     /// Nested dissection by METIS.
     NestedDissection,
     /// Cuts across a slender body by METIS: the parts between them by nested dissection, then the cuts one after the
@@ -37,6 +42,8 @@ impl Ordering {
             Self::Natural => "natural",
             Self::Layers => "layers",
             Self::TwistedLayers => "layers from both ends",
+            Self::Wavefront => "shortest wavefront",
+            Self::TwistedWavefront => "shortest wavefront from both ends",
             Self::NestedDissection => "nested dissection",
             Self::CrossSections => "cross-sections from both ends",
         }
@@ -93,6 +100,19 @@ fn propose(graph: &Graph, forced: Option<Ordering>) -> Result<Vec<(Ordering, Vec
             }
         }
     }
+    if wanted(Ordering::Wavefront) || wanted(Ordering::TwistedWavefront) {
+        let parts = wavefront::parts(graph);
+        for pull in wavefront::PULLS {
+            let first: Vec<Vec<u32>> = parts.iter().map(|part| part.from_first(graph, pull)).collect();
+            if wanted(Ordering::TwistedWavefront) {
+                let both = parts.iter().zip(&first).flat_map(|(part, first)| part.from_both(graph, pull, first));
+                orders.push((Ordering::TwistedWavefront, both.collect()));
+            }
+            if wanted(Ordering::Wavefront) {
+                orders.push((Ordering::Wavefront, first.concat()));
+            }
+        }
+    }
     let worth = if forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
     if wanted(Ordering::NestedDissection) && worth && !graph.neighbour.is_empty() {
         orders.push((Ordering::NestedDissection, nested_dissection(graph)?));
@@ -119,7 +139,7 @@ fn evaluate(graph: &Graph, ordering: Ordering, order: Vec<u32>) -> Choice {
 /// Whether `new` is to replace `current`; an order with branches may cost a little more than one without.
 fn better(new: &Candidate, current: &Candidate) -> bool {
     let weighted = |candidate: &Candidate| {
-        let chain = matches!(candidate.ordering, Ordering::Layers | Ordering::Natural);
+        let chain = matches!(candidate.ordering, Ordering::Layers | Ordering::Wavefront | Ordering::Natural);
         candidate.fill.flops * if chain { BRANCH_PREFERENCE } else { 1.0 }
     };
     weighted(new) < weighted(current)

@@ -8,8 +8,15 @@ use super::fixtures::{
 };
 use crate::linear::{LinearError, LinearSolver, Operand, Ordering, SolverOptions, SparsePattern, Storage};
 
-const ORDERINGS: [Ordering; 5] =
-    [Ordering::Natural, Ordering::Layers, Ordering::TwistedLayers, Ordering::NestedDissection, Ordering::CrossSections];
+const ORDERINGS: [Ordering; 7] = [
+    Ordering::Natural,
+    Ordering::Layers,
+    Ordering::TwistedLayers,
+    Ordering::Wavefront,
+    Ordering::TwistedWavefront,
+    Ordering::NestedDissection,
+    Ordering::CrossSections,
+];
 
 fn with_order(ordering: Option<Ordering>) -> SolverOptions {
     SolverOptions { ordering, branch_flops: 0.0, ..SolverOptions::default() }
