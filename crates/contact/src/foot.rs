@@ -9,6 +9,10 @@ use crate::surface::Surface;
 const LIMIT: usize = 60;
 /// How far coordinates may leave a patch before the neighbour takes over.
 const OVERLAP: f64 = 1e-9;
+/// How far a facet is continued beyond its edges while its foot is looked for.
+const CONTINUED: f64 = 0.7;
+/// A place on the edge of the surface has been found when it moves by less.
+const STILL: f64 = 0.01;
 
 /// A place on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,82 +113,84 @@ pub struct Foot {
 
 /// Projects `x` from a first guess; [`None`] when the closest point lies beyond the edge of the surface.
 ///
-/// Newton's iteration on `(x - x(xi)) . a_i = 0`, from patch to patch. Where two facets of a convex edge both decline a
-/// point, the one that it leaves less takes it.
+/// Newton's iteration on `(x - x(xi)) . a_i = 0`, from patch to patch. A facet is continued beyond its edges until its own
+/// foot is found, which says what neighbour to go to: on facets that are no parallelograms a step on the way says little.
+/// Where two facets of a convex edge both decline a point, the one that it leaves less takes it.
 #[must_use]
 pub fn project(posture: &Posture<'_>, x: &Vector3<f64>, from: Place) -> Option<Foot> {
     let mut at = Place { xi: start(posture, x, &from), ..from };
     let mut nodal = posture.gather(at.patch as usize);
-    let mut came_from: Option<(u32, f64)> = None;
+    let mut declined: Option<(u32, f64)> = None;
     let mut clamped = false;
     for _ in 0..LIMIT {
         let kind = posture.surface.kind(at.patch as usize);
         let local = Local::new(kind.shape(at.xi), &nodal);
         let step = newton_step(&local, x)?;
-        let mut xi = [at.xi[0] + step[0], at.xi[1] + step[1]];
+        let xi = [at.xi[0] + step[0], at.xi[1] + step[1]];
         let overflow = if kind.is_unbounded() { 0.0 } else { overflow(&xi) };
-        let small = step.norm() < 1e-13 * (1.0 + at.xi[0].hypot(at.xi[1]));
-        if small {
+        let (settled, facet) = (has_settled(&step, &at), is_facet(kind));
+        if settled && (overflow <= OVERLAP || !facet) {
             return Some(foot(local, at, x));
         }
-        if overflow <= OVERLAP {
+        if overflow <= if facet && !settled { CONTINUED } else { OVERLAP } {
             (at.xi, clamped) = (xi, false);
             continue;
         }
-        let edge = worst_edge(&xi);
-        match posture.surface.cross(at.patch as usize, edge, xi) {
-            Some((beyond, _)) if came_from.is_some_and(|(p, _)| p == beyond as u32) && is_facet(kind) => {
-                // Both sides of an edge decline the point.
-                let (other, left) = came_from?;
-                if overflow > left {
-                    at = Place { patch: other, xi: mirrored(posture, at.patch as usize, edge, xi)? };
-                    nodal = posture.gather(other as usize);
-                } else {
-                    at.xi = xi;
-                }
-                return unbounded(posture, x, at, &nodal);
+        match crossing(posture.surface, at.patch, &xi) {
+            // Both sides of an edge decline the point.
+            Some(there) if settled && declined.is_some_and(|(patch, _)| patch == there.patch) => {
+                let (_, left) = declined?;
+                let nearer = if overflow > left { there } else { at };
+                return unbounded(posture, x, nearer);
             }
-            Some((beyond, there)) => {
-                came_from = Some((at.patch, overflow));
-                at = Place { patch: beyond as u32, xi: there.map(|v| v.clamp(-1.0, 1.0)) };
-                nodal = posture.gather(beyond);
-                clamped = false;
+            Some(there) => {
+                declined = settled.then_some((at.patch, overflow));
+                (at, clamped) = (there, false);
+                nodal = posture.gather(at.patch as usize);
             }
-            None if clamped => return None,
+            None if settled => return None,
             None => {
-                xi = xi.map(|v| v.clamp(-1.0, 1.0));
-                (at.xi, clamped) = (xi, true);
+                let back = xi.map(|v| v.clamp(-1.0, 1.0));
+                if clamped && (back[0] - at.xi[0]).abs().max((back[1] - at.xi[1]).abs()) < STILL {
+                    return None;
+                }
+                (at.xi, clamped) = (back, true);
             }
         }
     }
     None
+}
+
+/// The place beyond the edge that coordinates leave a patch by most, or beyond the other one where the surface ends there.
+fn crossing(surface: &Surface, patch: u32, xi: &[f64; 2]) -> Option<Place> {
+    let axes = if xi[0].abs() >= xi[1].abs() { [0, 1] } else { [1, 0] };
+    axes.into_iter().filter(|&axis| xi[axis].abs() > 1.0 + OVERLAP).find_map(|axis| {
+        let (beyond, there) = surface.cross(patch as usize, edge(axis, xi[axis]), *xi)?;
+        Some(Place { patch: beyond as u32, xi: there.map(|v| v.clamp(-1.0, 1.0)) })
+    })
 }
 
 fn is_facet(kind: &PatchKind) -> bool {
     matches!(kind, PatchKind::Bilinear | PatchKind::Biquadratic)
 }
 
-fn mirrored(posture: &Posture<'_>, patch: usize, edge: u8, xi: [f64; 2]) -> Option<[f64; 2]> {
-    posture.surface.cross(patch, edge, xi).map(|(_, at)| at.map(|v| v.clamp(-1.0, 1.0)))
-}
-
-/// Projection on the continued patch.
-fn unbounded(
-    posture: &Posture<'_>,
-    x: &Vector3<f64>,
-    mut at: Place,
-    nodal: &[Vector3<f64>; PATCH_NODES],
-) -> Option<Foot> {
-    let kind = posture.surface.kind(at.patch as usize);
+/// Projection on the continued patch, no farther than half a patch beyond its edges.
+fn unbounded(posture: &Posture<'_>, x: &Vector3<f64>, mut at: Place) -> Option<Foot> {
+    let (kind, nodal) = (posture.surface.kind(at.patch as usize), posture.gather(at.patch as usize));
     for _ in 0..LIMIT {
-        let local = Local::new(kind.shape(at.xi), nodal);
+        let local = Local::new(kind.shape(at.xi), &nodal);
         let step = newton_step(&local, x)?;
-        if step.norm() < 1e-13 * (1.0 + at.xi[0].hypot(at.xi[1])) {
+        if has_settled(&step, &at) {
             return (overflow(&at.xi) < 0.5).then(|| foot(local, at, x));
         }
         at.xi = [at.xi[0] + step[0], at.xi[1] + step[1]];
     }
     None
+}
+
+/// Whether a step is as small as rounding.
+fn has_settled(step: &Vector2<f64>, at: &Place) -> bool {
+    step.norm() < 1e-13 * (1.0 + at.xi[0].hypot(at.xi[1]))
 }
 
 fn foot(local: Local, place: Place, x: &Vector3<f64>) -> Foot {
@@ -231,12 +237,12 @@ fn overflow(xi: &[f64; 2]) -> f64 {
     xi[0].abs().max(xi[1].abs()) - 1.0
 }
 
-fn worst_edge(xi: &[f64; 2]) -> u8 {
-    if xi[0].abs() >= xi[1].abs() {
-        if xi[0] > 0.0 { 1 } else { 3 }
-    } else if xi[1] > 0.0 {
-        2
-    } else {
-        0
+/// The edge beyond which a coordinate lies.
+fn edge(axis: usize, xi: f64) -> u8 {
+    match (axis, xi.is_sign_positive()) {
+        (0, true) => 1,
+        (0, false) => 3,
+        (_, true) => 2,
+        (_, false) => 0,
     }
 }

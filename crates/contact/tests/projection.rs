@@ -2,6 +2,8 @@
 
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
+mod common;
+
 use nalgebra::{Rotation3, Vector3};
 use subrope_contact::foot::{Foot, Place, Posture, project};
 use subrope_contact::{Smoothing, Surface};
@@ -100,8 +102,7 @@ fn orders() -> impl Iterator<Item = [usize; 2]> {
     (0..4).flat_map(|a| (0..4).map(move |b| [a, b]))
 }
 
-/// Above a ridge both facets decline a point: the one that it leaves less takes it, up to half a facet away. From the
-/// middle of a facet: a step that is cut to the length of a patch leaves a facet less than it should.
+/// Above a ridge both facets decline a point: the one that it leaves less takes it, up to half a facet away.
 #[test]
 fn the_facet_that_a_point_leaves_less_takes_it() {
     let slope = 0.4_f64;
@@ -113,7 +114,7 @@ fn the_facet_that_a_point_leaves_less_takes_it() {
             let over = along.map(|e| e.dot(&x));
             assert!(over[0] > 0.0 && over[1] > 0.0, "both decline it");
             let nearer = usize::from(u > 0.0);
-            for from in [at(0, [0.0; 2]), at(1, [0.0; 2])] {
+            for from in starts() {
                 let foot = onto(&surface, &positions, x, from).expect("a foot");
                 assert_eq!(foot.place.patch as usize, nearer, "{turned:?} {x} from {from:?}");
                 let expected = along[nearer] * over[nearer] + Vector3::y() * 0.3;
@@ -167,13 +168,17 @@ const CELLS: usize = 6;
 
 /// A smooth surface over a lattice of unit cells, `z` a function of place.
 fn lattice(z: impl Fn(f64, f64) -> f64) -> (Surface, Vec<Vector3<f64>>) {
+    lattice_of(Smoothing::Spline, z)
+}
+
+fn lattice_of(smoothing: Smoothing, z: impl Fn(f64, f64) -> f64) -> (Surface, Vec<Vector3<f64>>) {
     let node = |i: usize, j: usize| (j * (CELLS + 1) + i) as u32;
     let cell = |k: usize| {
         let (i, j) = (k % CELLS, k / CELLS);
         vec![node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]
     };
     let faces: Vec<Vec<u32>> = (0..CELLS * CELLS).map(cell).collect();
-    let surface = Surface::of_faces(&faces, CellKind::Hex8, Smoothing::Spline).expect("a surface");
+    let surface = Surface::of_faces(&faces, CellKind::Hex8, smoothing).expect("a surface");
     let place = |n: usize| ((n % (CELLS + 1)) as f64, (n / (CELLS + 1)) as f64);
     let positions = (0..(CELLS + 1) * (CELLS + 1)).map(place).map(|(x, y)| Vector3::new(x, y, z(x, y))).collect();
     (surface, positions)
@@ -220,6 +225,41 @@ fn a_foot_is_a_minimum_of_the_distance() {
             let hessian = foot.local.metric() - foot.local.bending(&(x - p));
             assert!(hessian[(0, 0)] > 0.0 && hessian.determinant() > 0.0, "{hessian}");
             assert!((p.x - 3.0).abs() > 0.5, "not at the bottom: {p}");
+        }
+    }
+}
+
+/// High above a dome the metric alone, without curvature, steps too far and back for ever.
+#[test]
+fn a_dome_has_a_foot_for_points_high_above() {
+    let (surface, positions) = lattice(|x, y| -0.1 * ((x - 3.0).powi(2) + (y - 3.0).powi(2)));
+    for x in [Vector3::new(3.4, 2.8, 12.0), Vector3::new(2.1, 3.3, 20.0)] {
+        for patch in [7, 14, 20, 28] {
+            let foot = onto(&surface, &positions, x, at(patch, [0.3, -0.3])).expect("a foot");
+            let r = x - foot.local.position;
+            assert!(foot.local.tangents.iter().all(|a| a.dot(&r).abs() < 1e-11));
+            assert!((foot.local.position - Vector3::new(3.0, 3.0, 0.0)).norm() < 0.5, "near the top");
+        }
+    }
+}
+
+/// A plane of facets that are no parallelograms, to its corners, from wherever the search starts.
+#[test]
+fn crooked_facets_find_every_point_of_a_plane() {
+    let mut noise = common::Noise(7);
+    for _ in 0..100 {
+        let (surface, mut positions) = lattice_of(Smoothing::None, |_, _| 0.0);
+        for p in &mut positions {
+            let inside = |x: f64| x > 0.5 && x < CELLS as f64 - 0.5;
+            p.x += if inside(p.x) { 0.2 * noise.next() } else { 0.0 };
+            p.y += if inside(p.y) { 0.2 * noise.next() } else { 0.0 };
+        }
+        for [u, v] in [[0.01, 0.01], [5.99, 0.02], [0.02, 5.97], [5.98, 5.98], [3.1, 0.01], [2.2, 4.7]] {
+            let x = Vector3::new(u, v, -0.001);
+            for patch in 0..surface.patch_count() as u32 {
+                let foot = onto(&surface, &positions, x, at(patch, [0.0; 2])).expect("a foot");
+                assert!((foot.gap + 0.001).abs() < 1e-12 && (foot.local.position - x).norm() < 1.001e-3);
+            }
         }
     }
 }
