@@ -69,61 +69,96 @@ pub(super) struct Choice {
 
 /// Tries all orders (or only `forced`) and takes the one with least work; all costs are returned.
 pub(super) fn choose(graph: &Graph, forced: Option<Ordering>) -> Result<(Choice, Vec<Candidate>), LinearError> {
-    let mut best: Option<Choice> = None;
-    let mut tried = Vec::new();
-    for (ordering, order) in propose(graph, forced)? {
-        let choice = evaluate(graph, ordering, order);
-        tried.push(choice.candidate);
-        if best.as_ref().is_none_or(|current| better(&choice.candidate, &current.candidate)) {
-            best = Some(choice);
-        }
+    let mut contest = Contest { graph, forced, best: None, tried: Vec::new() };
+    contest.layers();
+    contest.wavefronts();
+    contest.dissections()?;
+    if contest.wants(Ordering::Natural) && (forced.is_some() || graph.len() <= NATURAL_VERTICES) {
+        contest.enter(Ordering::Natural, natural(graph));
     }
-    let best = best.unwrap_or_else(|| evaluate(graph, Ordering::Natural, natural(graph)));
-    Ok((children_first(graph, best), tried))
+    let best = contest.best.unwrap_or_else(|| evaluate(graph, Ordering::Natural, natural(graph)));
+    Ok((children_first(graph, best), contest.tried))
 }
 
 fn natural(graph: &Graph) -> Vec<u32> {
     (0..graph.len() as u32).collect()
 }
 
-fn propose(graph: &Graph, forced: Option<Ordering>) -> Result<Vec<(Ordering, Vec<u32>)>, LinearError> {
-    let wanted = |ordering| forced.is_none_or(|only| only == ordering);
-    let mut orders = Vec::new();
-    if wanted(Ordering::Layers) || wanted(Ordering::TwistedLayers) {
+/// Orders against each other.
+struct Contest<'a> {
+    graph: &'a Graph,
+    forced: Option<Ordering>,
+    best: Option<Choice>,
+    tried: Vec<Candidate>,
+}
+
+impl Contest<'_> {
+    fn wants(&self, ordering: Ordering) -> bool {
+        self.forced.is_none_or(|only| only == ordering)
+    }
+
+    /// Enters an order; answers whether none before was better.
+    fn enter(&mut self, ordering: Ordering, order: Vec<u32>) -> bool {
+        let choice = evaluate(self.graph, ordering, order);
+        self.tried.push(choice.candidate);
+        let leads = self.best.as_ref().is_none_or(|current| better(&choice.candidate, &current.candidate));
+        if leads {
+            self.best = Some(choice);
+        }
+        leads
+    }
+
+    fn layers(&mut self) {
+        let graph = self.graph;
+        if !self.wants(Ordering::Layers) && !self.wants(Ordering::TwistedLayers) {
+            return;
+        }
         for origin in [Origin::Section, Origin::Vertex] {
             let levels = components(graph, origin);
-            if wanted(Ordering::TwistedLayers) {
-                orders.push((Ordering::TwistedLayers, concatenate(&levels, |part| part.twisted(graph))));
+            if self.wants(Ordering::TwistedLayers) {
+                self.enter(Ordering::TwistedLayers, concatenate(&levels, |part| part.twisted(graph)));
             }
-            if wanted(Ordering::Layers) {
-                orders.push((Ordering::Layers, concatenate(&levels, |part| part.order.clone())));
+            if self.wants(Ordering::Layers) {
+                self.enter(Ordering::Layers, concatenate(&levels, |part| part.order.clone()));
             }
         }
     }
-    if wanted(Ordering::Wavefront) || wanted(Ordering::TwistedWavefront) {
+
+    /// With every pull, as long as the order from one end, which is that from both but for its middle, is the best so far.
+    fn wavefronts(&mut self) {
+        let graph = self.graph;
+        if !self.wants(Ordering::Wavefront) && !self.wants(Ordering::TwistedWavefront) {
+            return;
+        }
         let parts = wavefront::parts(graph);
         for pull in wavefront::PULLS {
-            let first: Vec<Vec<u32>> = parts.iter().map(|part| part.from_first(graph, pull)).collect();
-            if wanted(Ordering::TwistedWavefront) {
-                let both = parts.iter().zip(&first).flat_map(|(part, first)| part.from_both(graph, pull, first));
-                orders.push((Ordering::TwistedWavefront, both.collect()));
+            let first: Vec<Vec<u32>> = parts.iter().map(|part| part.forward(graph, pull)).collect();
+            if self.wants(Ordering::Wavefront) && !self.enter(Ordering::Wavefront, first.concat()) {
+                return;
             }
-            if wanted(Ordering::Wavefront) {
-                orders.push((Ordering::Wavefront, first.concat()));
+            if self.wants(Ordering::TwistedWavefront) {
+                let both = parts.iter().zip(&first).flat_map(|(part, first)| part.inward(graph, pull, first));
+                self.enter(Ordering::TwistedWavefront, both.collect());
             }
         }
     }
-    let worth = if forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
-    if wanted(Ordering::NestedDissection) && worth && !graph.neighbour.is_empty() {
-        orders.push((Ordering::NestedDissection, nested_dissection(graph)?));
+
+    fn dissections(&mut self) -> Result<(), LinearError> {
+        let graph = self.graph;
+        let worth = if self.forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
+        if !worth || graph.neighbour.is_empty() {
+            return Ok(());
+        }
+        if self.wants(Ordering::NestedDissection) {
+            self.enter(Ordering::NestedDissection, nested_dissection(graph)?);
+        }
+        if self.wants(Ordering::CrossSections) {
+            for order in cross_sections(graph)? {
+                self.enter(Ordering::CrossSections, order);
+            }
+        }
+        Ok(())
     }
-    if wanted(Ordering::CrossSections) && worth && !graph.neighbour.is_empty() {
-        orders.extend(cross_sections(graph)?.into_iter().map(|order| (Ordering::CrossSections, order)));
-    }
-    if wanted(Ordering::Natural) && (forced.is_some() || graph.len() <= NATURAL_VERTICES) {
-        orders.push((Ordering::Natural, natural(graph)));
-    }
-    Ok(orders)
 }
 
 fn concatenate(components: &[Levels], order: impl Fn(&Levels) -> Vec<u32>) -> Vec<u32> {

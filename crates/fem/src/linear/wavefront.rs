@@ -57,13 +57,13 @@ impl Part {
     }
 
     /// From the first end to the last.
-    pub(super) fn from_first(&self, graph: &Graph, pull: f64) -> Vec<u32> {
+    pub(super) fn forward(&self, graph: &Graph, pull: f64) -> Vec<u32> {
         Sweep::new(graph, self, -pull).run(&self.ends[0])
     }
 
     /// From both ends to the wavefront in the middle, which comes last: two independent branches. `first` is the order
     /// from the first end.
-    pub(super) fn from_both(&self, graph: &Graph, pull: f64, first: &[u32]) -> Vec<u32> {
+    pub(super) fn inward(&self, graph: &Graph, pull: f64, first: &[u32]) -> Vec<u32> {
         let mut order = first[..first.len() / 2].to_vec();
         let mut taken = vec![false; graph.len()];
         order.iter().for_each(|&vertex| taken[vertex as usize] = true);

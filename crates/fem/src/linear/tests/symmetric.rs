@@ -268,7 +268,8 @@ fn the_analysis_reports_all_orders() {
     let solver = LinearSolver::analyse(&pattern, &SolverOptions::default()).unwrap();
     let report = solver.analysis();
     assert_eq!((report.unknowns, report.vertices), (1440, 480));
-    for ordering in ORDERINGS {
+    // A wavefront from both ends is tried where that from one end is the best so far.
+    for ordering in ORDERINGS.into_iter().filter(|&ordering| ordering != Ordering::TwistedWavefront) {
         assert!(report.candidates.iter().any(|candidate| candidate.ordering == ordering), "{ordering:?}");
     }
     assert!(report.fill.nonzeros * 8.0 < report.bytes as f64);
