@@ -40,12 +40,16 @@ fn a_plane_answers_coordinates_and_height() {
     let (positions, displacement, turn, origin) = frame(arm);
     let surface = Surface::plane([0, 1, 2, 3], arm);
     let posture = Posture { surface: &surface, positions: &positions, displacement: &displacement };
-    for [u, v, w] in [[30.0, -4.0, 0.7], [-0.2, 0.1, -0.3], [0.0, 0.0, 0.0]] {
+    for [u, v, w] in [[30.0, -4.0, 0.7], [300.0, -4e3, 0.2], [-0.2, 0.1, -0.3], [0.0, 0.0, 0.0]] {
         let x = origin + turn * Vector3::new(u, v, w);
         let foot = project(&posture, &x, at(0, [5.0, 5.0])).expect("a plane has no edge");
-        assert!((foot.gap - w).abs() < 1e-13 && (foot.normal - turn * Vector3::z()).norm() < 1e-14);
-        assert!((foot.place.xi[0] - u).abs() + (foot.place.xi[1] - v).abs() < 1e-12, "{:?}", foot.place);
-        assert!((posture.position(&foot.place) + foot.normal * foot.gap - x).norm() < 1e-12);
+        assert!((foot.gap - w).abs() < 1e-13 * (1.0 + v.abs()) && (foot.normal - turn * Vector3::z()).norm() < 1e-14);
+        assert!(
+            (foot.place.xi[0] - u).abs() + (foot.place.xi[1] - v).abs() < 1e-12 * (1.0 + v.abs()),
+            "{:?}",
+            foot.place
+        );
+        assert!((posture.position(&foot.place) + foot.normal * foot.gap - x).norm() < 1e-12 * (1.0 + v.abs()));
     }
 }
 
@@ -229,16 +233,19 @@ fn a_foot_is_a_minimum_of_the_distance() {
     }
 }
 
-/// High above a dome the metric alone, without curvature, steps too far and back for ever.
+/// High above a dome the metric alone, without curvature, steps too far and back for ever. In any unit of length.
 #[test]
 fn a_dome_has_a_foot_for_points_high_above() {
-    let (surface, positions) = lattice(|x, y| -0.1 * ((x - 3.0).powi(2) + (y - 3.0).powi(2)));
-    for x in [Vector3::new(3.4, 2.8, 12.0), Vector3::new(2.1, 3.3, 20.0)] {
-        for patch in [7, 14, 20, 28] {
-            let foot = onto(&surface, &positions, x, at(patch, [0.3, -0.3])).expect("a foot");
-            let r = x - foot.local.position;
-            assert!(foot.local.tangents.iter().all(|a| a.dot(&r).abs() < 1e-11));
-            assert!((foot.local.position - Vector3::new(3.0, 3.0, 0.0)).norm() < 0.5, "near the top");
+    for unit in [1e-3, 1.0, 1e3] {
+        let (surface, mut positions) = lattice(|x, y| -0.1 * ((x - 3.0).powi(2) + (y - 3.0).powi(2)));
+        positions.iter_mut().for_each(|p| *p *= unit);
+        for x in [Vector3::new(3.4, 2.8, 12.0), Vector3::new(2.1, 3.3, 20.0)] {
+            for patch in [7, 14, 20, 28] {
+                let foot = onto(&surface, &positions, x * unit, at(patch, [0.3, -0.3])).expect("a foot");
+                let r = x - foot.local.position / unit;
+                assert!(foot.local.tangents.iter().all(|a| a.dot(&r).abs() < 1e-11 * unit));
+                assert!((foot.local.position / unit - Vector3::new(3.0, 3.0, 0.0)).norm() < 0.5, "near the top");
+            }
         }
     }
 }

@@ -7,8 +7,8 @@
 use crate::linear::GmresLimits;
 
 /// Fall of the residual in one correction from which the tangent counts as nearly constant: what is left of the error is
-/// of the order of the change of the tangent.
-const NEAR: f64 = 0.1;
+/// of the order of the change of the tangent. (.1 took one factorisation more for 19 200 bricks, and no fewer elsewhere.)
+const NEAR: f64 = 0.3;
 /// Part of what a factorisation costs that may be spent on a solution without one.
 const SHARE: f64 = 0.5;
 /// Fewer iterations of GMRES than this are not worth an attempt.
@@ -84,7 +84,7 @@ mod tests {
     fn factors_serve_where_the_tangent_is_nearly_constant() {
         let kept = kept(20.0);
         assert!(kept.limits(&[], 1e-8).is_none() && kept.limits(&[1.0], 1e-8).is_none());
-        assert!(kept.limits(&[1.0, 0.2], 1e-8).is_none(), "the residual falls too little");
+        assert!(kept.limits(&[1.0, 0.4], 1e-8).is_none(), "the residual falls too little");
         assert!(kept.limits(&[1.0, f64::NAN], 1e-8).is_none());
         let limits = kept.limits(&[10.0, 1.0, 1e-2], 1e-8);
         assert_eq!(limits.map(|l| (l.target, l.most)), Some((1e-4, 10)));

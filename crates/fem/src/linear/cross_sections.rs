@@ -15,18 +15,27 @@ const PART_VERTICES: usize = 48;
 /// Most times that parts are cut in two.
 const DEEPEST: u32 = 8;
 
-/// An order for every number of cuts that is worth a try; none for a graph that is not slender.
+/// Orders of a slender body by one dissection.
+pub(super) struct CrossSections {
+    /// For every number of cuts that is worth a try.
+    pub(super) orders: Vec<Vec<u32>>,
+    /// The nested dissection that the cuts are of.
+    pub(super) nested: Vec<u32>,
+}
+
+/// None of a graph that is not slender.
 ///
 /// # Errors
 /// As [`cuts`].
-pub(super) fn cross_sections(graph: &Graph) -> Result<Vec<Vec<u32>>, LinearError> {
+pub(super) fn cross_sections(graph: &Graph) -> Result<Option<CrossSections>, LinearError> {
     let along = stations(graph);
     let depth = (graph.len() / PART_VERTICES).checked_ilog2().unwrap_or(0).min(DEEPEST);
     if depth < 2 || !is_slender(graph, &along) {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let cuts = cuts(graph, depth)?;
-    Ok((2..=depth).map(|levels| order(&cuts, levels, &along)).collect())
+    let orders = (2..=depth).map(|levels| order(&cuts, levels, &along)).collect();
+    Ok(Some(CrossSections { orders, nested: cuts.order }))
 }
 
 /// Number of the layer that every vertex lies in, counted from an end section.

@@ -149,13 +149,13 @@ impl Contest<'_> {
         if !worth || graph.neighbour.is_empty() {
             return Ok(());
         }
+        let sections = if self.wants(Ordering::CrossSections) { cross_sections(graph)? } else { None };
+        let (orders, nested) = sections.map_or_else(Default::default, |s| (s.orders, Some(s.nested)));
         if self.wants(Ordering::NestedDissection) {
-            self.enter(Ordering::NestedDissection, nested_dissection(graph)?);
+            self.enter(Ordering::NestedDissection, nested.map_or_else(|| nested_dissection(graph), Ok)?);
         }
-        if self.wants(Ordering::CrossSections) {
-            for order in cross_sections(graph)? {
-                self.enter(Ordering::CrossSections, order);
-            }
+        for order in orders {
+            self.enter(Ordering::CrossSections, order);
         }
         Ok(())
     }
