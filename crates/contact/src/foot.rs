@@ -11,6 +11,8 @@ const LIMIT: usize = 60;
 const OVERLAP: f64 = 1e-9;
 /// How far a facet is continued beyond its edges while its foot is looked for.
 const CONTINUED: f64 = 0.7;
+/// The same where the neighbour has declined the point.
+const FAR: f64 = 8.0;
 /// A place on the edge of the surface has been found when it moves by less.
 const STILL: f64 = 0.01;
 
@@ -132,13 +134,17 @@ pub fn project(posture: &Posture<'_>, x: &Vector3<f64>, from: Place) -> Option<F
         if settled && (overflow <= OVERLAP || !facet) {
             return Some(foot(local, at, x));
         }
-        if overflow <= if facet && !settled { CONTINUED } else { OVERLAP } {
+        let there = if overflow <= OVERLAP { None } else { crossing(posture.surface, at.patch, &xi) };
+        let back = there.is_some_and(|there| declined.is_some_and(|(patch, _)| patch == there.patch));
+        // Where the way leads back to a facet that has declined the point, the foot itself decides.
+        let continued = if back { FAR } else { CONTINUED };
+        if overflow <= if facet && !settled { continued } else { OVERLAP } {
             (at.xi, clamped) = (xi, false);
             continue;
         }
-        match crossing(posture.surface, at.patch, &xi) {
+        match there {
             // Both sides of an edge decline the point.
-            Some(there) if settled && declined.is_some_and(|(patch, _)| patch == there.patch) => {
+            Some(there) if back => {
                 let (_, left) = declined?;
                 let nearer = if overflow > left { there } else { at };
                 return unbounded(posture, x, nearer);

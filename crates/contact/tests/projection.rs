@@ -113,7 +113,17 @@ fn the_facet_that_a_point_leaves_less_takes_it() {
     let along = [Vector3::new(slope.cos(), 0.0, slope.sin()), Vector3::new(-slope.cos(), 0.0, slope.sin())];
     for turned in orders() {
         let (surface, positions) = roof(slope, turned);
-        for [u, v] in [[-0.1, 0.6], [0.1, 0.6], [-0.02, 0.2], [0.02, 0.2], [-0.3, 0.9], [0.3, 0.9], [-0.05, 1.1]] {
+        for [u, v] in [
+            [-0.1, 0.6],
+            [0.1, 0.6],
+            [-0.02, 0.2],
+            [0.02, 0.2],
+            [-0.3, 0.9],
+            [0.3, 0.9],
+            [-0.05, 1.1],
+            [-0.35, 1.2],
+            [0.6, 1.9],
+        ] {
             let x = Vector3::new(u, 0.3, v);
             let over = along.map(|e| e.dot(&x));
             assert!(over[0] > 0.0 && over[1] > 0.0, "both decline it");

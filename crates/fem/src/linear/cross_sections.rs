@@ -53,7 +53,7 @@ fn stations(graph: &Graph) -> Vec<u32> {
 /// that the layers of a rope are fewer than those of its bricks.
 fn is_slender(graph: &Graph, along: &[u32]) -> bool {
     let layers = along.iter().max().map_or(0, |&last| last as usize + 1);
-    8 * layers * layers * layers > graph.len()
+    8.0 * (layers as f64).powi(3) > graph.len() as f64
 }
 
 /// Parts after `levels` bisections, then the cuts from both ends to the middle.

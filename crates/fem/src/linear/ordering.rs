@@ -6,12 +6,14 @@ use super::error::LinearError;
 use super::fill::{Elimination, FillEstimate, postorder};
 use super::graph::Graph;
 use super::levels::{Levels, Origin, components};
-use super::wavefront;
+use super::wavefront::{self, Part};
 
 /// Below this number of vertices nested dissection has nothing to dissect.
 const DISSECTION_VERTICES: usize = 200;
 /// Above this number of vertices the natural order is not tried.
 const NATURAL_VERTICES: usize = 1000;
+/// Above this number of separate bodies no wavefront is tried: each keeps an array of the length of the graph.
+const MOST_PARTS: usize = 32;
 /// Factor on the work up to which an order with independent branches is preferred to a chain.
 const BRANCH_PREFERENCE: f64 = 1.05;
 
@@ -130,7 +132,11 @@ impl Contest<'_> {
         if !self.wants(Ordering::Wavefront) && !self.wants(Ordering::TwistedWavefront) {
             return;
         }
-        let parts = wavefront::parts(graph);
+        let levels = components(graph, Origin::Section);
+        if self.forced.is_none() && levels.len() > MOST_PARTS {
+            return;
+        }
+        let parts: Vec<Part> = levels.into_iter().map(|levels| Part::new(graph, levels)).collect();
         for pull in wavefront::PULLS {
             let first: Vec<Vec<u32>> = parts.iter().map(|part| part.forward(graph, pull)).collect();
             if self.wants(Ordering::Wavefront) && !self.enter(Ordering::Wavefront, first.concat()) {

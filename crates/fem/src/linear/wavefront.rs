@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::graph::Graph;
-use super::levels::{Levels, Origin, components};
+use super::levels::Levels;
 
 /// Unknowns, in those of a mean vertex, that a vertex may take into the front for every layer that it has been left behind:
 /// few follow thick bodies, many thin ones.
@@ -28,13 +28,8 @@ pub(super) struct Part {
     weight: f64,
 }
 
-/// The parts of a graph.
-pub(super) fn parts(graph: &Graph) -> Vec<Part> {
-    components(graph, Origin::Section).into_iter().map(|levels| Part::new(graph, levels)).collect()
-}
-
 impl Part {
-    fn new(graph: &Graph, levels: Levels) -> Self {
+    pub(super) fn new(graph: &Graph, levels: Levels) -> Self {
         let last = levels.len().saturating_sub(1);
         let mut station = vec![0.0; graph.len()];
         for number in 0..levels.len() {
