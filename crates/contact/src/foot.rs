@@ -156,11 +156,11 @@ pub fn project(posture: &Posture<'_>, x: &Vector3<f64>, from: Place) -> Option<F
             }
             None if settled => return None,
             None => {
-                let back = xi.map(|v| v.clamp(-1.0, 1.0));
-                if clamped && (back[0] - at.xi[0]).abs().max((back[1] - at.xi[1]).abs()) < STILL {
+                let inside = xi.map(|v| v.clamp(-1.0, 1.0));
+                if clamped && (inside[0] - at.xi[0]).abs().max((inside[1] - at.xi[1]).abs()) < STILL {
                     return None;
                 }
-                (at.xi, clamped) = (back, true);
+                (at.xi, clamped) = (inside, true);
             }
         }
     }
