@@ -8,7 +8,7 @@
 use super::dissection::{Cuts, cuts};
 use super::error::LinearError;
 use super::graph::Graph;
-use super::levels::{Origin, components};
+use super::levels::Levels;
 
 /// Vertices of a part below which it is not cut again.
 const PART_VERTICES: usize = 48;
@@ -23,12 +23,12 @@ pub(super) struct CrossSections {
     pub(super) nested: Vec<u32>,
 }
 
-/// None of a graph that is not slender.
+/// None of a graph that is not slender. `layers` are those of every component from an end section on.
 ///
 /// # Errors
 /// As [`cuts`].
-pub(super) fn cross_sections(graph: &Graph) -> Result<Option<CrossSections>, LinearError> {
-    let along = stations(graph);
+pub(super) fn cross_sections(graph: &Graph, layers: &[Levels]) -> Result<Option<CrossSections>, LinearError> {
+    let along = stations(graph, layers);
     let depth = (graph.len() / PART_VERTICES).checked_ilog2().unwrap_or(0).min(DEEPEST);
     if depth < 2 || !is_slender(graph, &along) {
         return Ok(None);
@@ -38,13 +38,11 @@ pub(super) fn cross_sections(graph: &Graph) -> Result<Option<CrossSections>, Lin
     Ok(Some(CrossSections { orders, nested: cuts.order }))
 }
 
-/// Number of the layer that every vertex lies in, counted from an end section.
-fn stations(graph: &Graph) -> Vec<u32> {
+/// Number of the layer that every vertex lies in.
+fn stations(graph: &Graph, layers: &[Levels]) -> Vec<u32> {
     let mut along = vec![0; graph.len()];
-    for levels in components(graph, Origin::Section) {
-        for number in 0..levels.len() {
-            levels.level(number).iter().for_each(|&vertex| along[vertex as usize] = number as u32);
-        }
+    for (vertex, number) in layers.iter().flat_map(Levels::numbered) {
+        along[vertex as usize] = number as u32;
     }
     along
 }

@@ -24,7 +24,12 @@ impl Levels {
         &self.order[self.start[number]..self.start[number + 1]]
     }
 
-    fn last(&self) -> &[u32] {
+    /// Every vertex with the number of its level.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (u32, usize)> {
+        (0..self.len()).flat_map(|number| self.level(number).iter().map(move |&vertex| (vertex, number)))
+    }
+
+    pub(super) fn last(&self) -> &[u32] {
         if self.len() == 0 { &[] } else { self.level(self.len() - 1) }
     }
 

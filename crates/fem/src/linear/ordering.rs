@@ -72,9 +72,10 @@ pub(super) struct Choice {
 /// Tries all orders (or only `forced`) and takes the one with least work; all costs are returned.
 pub(super) fn choose(graph: &Graph, forced: Option<Ordering>) -> Result<(Choice, Vec<Candidate>), LinearError> {
     let mut contest = Contest { graph, forced, best: None, tried: Vec::new() };
-    contest.layers();
-    contest.wavefronts();
-    contest.dissections()?;
+    let sections = components(graph, Origin::Section);
+    contest.layers(&sections);
+    contest.wavefronts(&sections);
+    contest.dissections(&sections)?;
     if contest.wants(Ordering::Natural) && (forced.is_some() || graph.len() <= NATURAL_VERTICES) {
         contest.enter(Ordering::Natural, natural(graph));
     }
@@ -110,33 +111,30 @@ impl Contest<'_> {
         leads
     }
 
-    fn layers(&mut self) {
+    /// Layers from an end section on, and from one vertex.
+    fn layers(&mut self, sections: &[Levels]) {
         let graph = self.graph;
         if !self.wants(Ordering::Layers) && !self.wants(Ordering::TwistedLayers) {
             return;
         }
-        for origin in [Origin::Section, Origin::Vertex] {
-            let levels = components(graph, origin);
+        for levels in [sections, &components(graph, Origin::Vertex)] {
             if self.wants(Ordering::TwistedLayers) {
-                self.enter(Ordering::TwistedLayers, concatenate(&levels, |part| part.twisted(graph)));
+                self.enter(Ordering::TwistedLayers, concatenate(levels, |part| part.twisted(graph)));
             }
             if self.wants(Ordering::Layers) {
-                self.enter(Ordering::Layers, concatenate(&levels, |part| part.order.clone()));
+                self.enter(Ordering::Layers, concatenate(levels, |part| part.order.clone()));
             }
         }
     }
 
     /// With every pull, as long as the order from one end, which is that from both but for its middle, is the best so far.
-    fn wavefronts(&mut self) {
+    fn wavefronts(&mut self, sections: &[Levels]) {
         let graph = self.graph;
-        if !self.wants(Ordering::Wavefront) && !self.wants(Ordering::TwistedWavefront) {
+        let wanted = self.wants(Ordering::Wavefront) || self.wants(Ordering::TwistedWavefront);
+        if !wanted || (self.forced.is_none() && sections.len() > MOST_PARTS) {
             return;
         }
-        let levels = components(graph, Origin::Section);
-        if self.forced.is_none() && levels.len() > MOST_PARTS {
-            return;
-        }
-        let parts: Vec<Part> = levels.into_iter().map(|levels| Part::new(graph, levels)).collect();
+        let parts: Vec<Part<'_>> = sections.iter().map(|levels| Part::new(graph, levels)).collect();
         for pull in wavefront::PULLS {
             let first: Vec<Vec<u32>> = parts.iter().map(|part| part.forward(graph, pull)).collect();
             if self.wants(Ordering::Wavefront) && !self.enter(Ordering::Wavefront, first.concat()) {
@@ -149,14 +147,14 @@ impl Contest<'_> {
         }
     }
 
-    fn dissections(&mut self) -> Result<(), LinearError> {
+    fn dissections(&mut self, sections: &[Levels]) -> Result<(), LinearError> {
         let graph = self.graph;
         let worth = if self.forced.is_some() { graph.len() > 1 } else { graph.len() >= DISSECTION_VERTICES };
         if !worth || graph.neighbour.is_empty() {
             return Ok(());
         }
-        let sections = if self.wants(Ordering::CrossSections) { cross_sections(graph)? } else { None };
-        let (orders, nested) = sections.map_or_else(Default::default, |s| (s.orders, Some(s.nested)));
+        let slender = if self.wants(Ordering::CrossSections) { cross_sections(graph, sections)? } else { None };
+        let (orders, nested) = slender.map_or_else(Default::default, |s| (s.orders, Some(s.nested)));
         if self.wants(Ordering::NestedDissection) {
             self.enter(Ordering::NestedDissection, nested.map_or_else(|| nested_dissection(graph), Ok)?);
         }

@@ -18,25 +18,21 @@ pub(super) const PULLS: [f64; 2] = [4.0, 8.0];
 const AVERAGES: usize = 8;
 
 /// A connected part of the graph along its axis.
-pub(super) struct Part {
-    vertices: Vec<u32>,
-    /// End sections.
-    ends: [Vec<u32>; 2],
+pub(super) struct Part<'a> {
+    /// From an end section on.
+    levels: &'a Levels,
     /// Place along the axis in layers, of every vertex of the graph; 0 outside the part.
     station: Vec<f64>,
     /// Mean weight of a vertex.
     weight: f64,
 }
 
-impl Part {
-    pub(super) fn new(graph: &Graph, levels: Levels) -> Self {
-        let last = levels.len().saturating_sub(1);
+impl<'a> Part<'a> {
+    pub(super) fn new(graph: &Graph, levels: &'a Levels) -> Self {
         let mut station = vec![0.0; graph.len()];
-        for number in 0..levels.len() {
-            levels.level(number).iter().for_each(|&vertex| station[vertex as usize] = number as f64);
-        }
+        levels.numbered().for_each(|(vertex, number)| station[vertex as usize] = number as f64);
         // None of a part of one or two levels.
-        let inside = levels.level(0).len()..levels.order.len() - levels.level(last).len();
+        let inside = levels.level(0).len()..levels.order.len() - levels.last().len();
         let inside = levels.order.get(inside).unwrap_or_default();
         for _ in 0..AVERAGES {
             let before = station.clone();
@@ -47,13 +43,12 @@ impl Part {
             }
         }
         let weight: f64 = levels.order.iter().map(|&vertex| f64::from(graph.weight[vertex as usize])).sum();
-        let ends = [levels.level(0).to_vec(), levels.level(last).to_vec()];
-        Self { weight: weight / levels.order.len() as f64, vertices: levels.order, ends, station }
+        Self { weight: weight / levels.order.len() as f64, levels, station }
     }
 
     /// From the first end to the last.
     pub(super) fn forward(&self, graph: &Graph, pull: f64) -> Vec<u32> {
-        Sweep::new(graph, self, -pull).run(&self.ends[0])
+        Sweep::new(graph, self, -pull).run(self.levels.level(0))
     }
 
     /// From both ends to the wavefront in the middle, which comes last: two independent branches. `first` is the order
@@ -62,7 +57,7 @@ impl Part {
         let mut order = first[..first.len() / 2].to_vec();
         let mut taken = vec![false; graph.len()];
         order.iter().for_each(|&vertex| taken[vertex as usize] = true);
-        let rest = Sweep::new(graph, self, pull).run(&self.ends[1]);
+        let rest = Sweep::new(graph, self, pull).run(self.levels.last());
         let rest = rest.into_iter().filter(|&vertex| !taken[vertex as usize]);
         let is_front = |&vertex: &u32| graph.neighbours(vertex).iter().any(|&n| taken[n as usize]);
         let (front, beyond): (Vec<u32>, Vec<u32>) = rest.partition(is_front);
@@ -96,10 +91,10 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(graph: &'a Graph, part: &Part, pull: f64) -> Self {
+    fn new(graph: &'a Graph, part: &Part<'_>, pull: f64) -> Self {
         let mut priority = vec![0; graph.len()];
         let weight = |vertex: u32| i64::from(graph.weight[vertex as usize]);
-        for &vertex in &part.vertices {
+        for &vertex in &part.levels.order {
             let taken = weight(vertex) + graph.neighbours(vertex).iter().map(|&n| weight(n)).sum::<i64>();
             let left_behind = (pull * part.weight * part.station[vertex as usize]).round() as i64;
             priority[vertex as usize] = left_behind - taken;

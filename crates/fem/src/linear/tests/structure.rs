@@ -191,7 +191,7 @@ fn dissection_is_a_repeatable_permutation() {
 fn cross_sections_are_permutations_whose_work_grows_with_the_length() {
     let flops = |nz| {
         let graph = Graph::compress(&Grid::new(8, 8, nz).pattern(Storage::Lower));
-        let sections = cross_sections(&graph).unwrap().unwrap();
+        let sections = cross_sections(&graph, &components(&graph, Origin::Section)).unwrap().unwrap();
         for order in sections.orders.into_iter().chain([sections.nested]) {
             let mut sorted = order;
             sorted.sort_unstable();
